@@ -1,0 +1,1 @@
+"""fibertwin: from a fiber mat to a CFD case one can trust."""

@@ -1,0 +1,1 @@
+"""Analytical models of pressure drop and single fiber efficiency."""

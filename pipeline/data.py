@@ -1,0 +1,442 @@
+"""What flows from stage to stage. A thing that exists is valid: it is checked here, once, and frozen.
+
+Arrays are read-only. Lengths are in meters, angles in radians, everything else in SI.
+"""
+
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from pipeline.geometry.box import Box
+from pipeline.geometry.tets import volumes
+from pipeline.geometry.triangles import enclosed_volume, unmatched_edges
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+_Scalar = TypeVar("_Scalar", bound=np.generic)
+
+INLET, OUTLET, FIBERS = "inlet", "outlet", "fibers"
+SIDES = ("xmin", "xmax", "ymin", "ymax")
+PATCHES = (INLET, OUTLET, *SIDES, FIBERS)
+"""The patches of a duct, in the order in which they are written."""
+
+
+def _frozen(array: npt.NDArray[_Scalar]) -> npt.NDArray[_Scalar]:
+    copy = np.ascontiguousarray(array)
+    if copy is array and array.flags.writeable:
+        copy = array.copy()
+    copy.flags.writeable = False
+    return copy
+
+
+def _freeze(thing: object, **arrays: npt.NDArray[np.generic]) -> None:
+    # the one way to fill a frozen dataclass from its own __post_init__
+    for name, array in arrays.items():
+        object.__setattr__(thing, name, _frozen(array))
+
+
+def _check(holds: bool, message: str) -> None:
+    if not holds:
+        raise ValueError(message)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Mat:
+    """A fiber mat: one polyline per fiber, in a slab that the flow crosses along +z.
+
+    Parameters
+    ----------
+    nodes : (n, 3) array [m]
+        Center lines, fiber after fiber. In a periodic mat they may leave the slab sideways: what leaves
+        through one side enters through the opposite one.
+    first : (fibers + 1,) int array
+        Fiber k owns ``nodes[first[k]:first[k + 1]]``, at least two of them.
+    radius : (fibers,) array [m]
+        Above 0.
+    slab : Box [m]
+        The mat's own space: its plan, and z from 0 to its thickness.
+    seed : int
+        Seed of the generator that drew the mat; -1 for fibers that nobody drew.
+    origin : str
+        How the mat was made, for people to read.
+    periodic : bool
+        Whether the plan wraps in x and y.
+    """
+
+    nodes: Floats
+    first: Ints
+    radius: Floats
+    slab: Box
+    seed: int
+    origin: str
+    periodic: bool = False
+
+    def __post_init__(self) -> None:
+        _freeze(
+            self,
+            nodes=np.asarray(self.nodes, np.float64),
+            first=np.asarray(self.first, np.int64),
+            radius=np.asarray(self.radius, np.float64),
+        )
+        fibers = len(self.radius)
+        _check(fibers > 0, "a mat has at least one fiber")
+        _check(self.nodes.ndim == 2 and self.nodes.shape[1] == 3, "nodes have three coordinates")
+        _check(self.first.shape == (fibers + 1,), f"{fibers} radii, but {len(self.first) - 1} center lines")
+        _check(self.first[0] == 0 and self.first[-1] == len(self.nodes), "first does not span the nodes")
+        _check(bool((np.diff(self.first) >= 2).all()), "a center line has fewer than two nodes")
+        _check(bool(np.isfinite(self.nodes).all()), "a node is not finite")
+        _check(bool(((self.radius > 0) & np.isfinite(self.radius)).all()), "a radius is not above 0")
+        short = int((self.segment_lengths() <= 0).sum())
+        _check(short == 0, f"{short} segments have no length")
+
+    @property
+    def fibers(self) -> int:
+        """Number of fibers."""
+        return len(self.radius)
+
+    @property
+    def segments(self) -> int:
+        """Number of straight pieces of all fibers."""
+        return len(self.nodes) - self.fibers
+
+    @property
+    def thickness(self) -> float:
+        """Extent of the slab along the flow [m]."""
+        return self.slab.size[2]
+
+    def segment_starts(self) -> Ints:
+        """Node at which each segment starts; it ends at the next node, (segments,) int array."""
+        is_start = np.ones(len(self.nodes), dtype=bool)
+        is_start[self.first[1:] - 1] = False
+        return np.flatnonzero(is_start)
+
+    def segment_fibers(self) -> Ints:
+        """Fiber that each segment belongs to, (segments,) int array."""
+        return np.repeat(np.arange(self.fibers), np.diff(self.first) - 1)
+
+    def segment_lengths(self) -> Floats:
+        """Length of each segment, (segments,) array [m]."""
+        start = self.segment_starts()
+        lengths: Floats = np.linalg.norm(self.nodes[start + 1] - self.nodes[start], axis=1)
+        return lengths
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Surface:
+    """The fibers' outside, united into closed surfaces and cut flush with the plan's sides.
+
+    Parameters
+    ----------
+    points : (n, 3) array [m]
+    triangles : (m, 3) int array
+        Counterclockwise seen from the air.
+    fiber : (m,) int array
+        Fiber that each triangle came from; the flat cuts on the sides belong to their fiber too.
+    radius : (fibers,) array [m]
+        Radius of each fiber of the mat, as in `Mat`.
+    slab : Box [m]
+        The mat's slab.
+    """
+
+    points: Floats
+    triangles: Ints
+    fiber: Ints
+    radius: Floats
+    slab: Box
+
+    def __post_init__(self) -> None:
+        _freeze(
+            self,
+            points=np.asarray(self.points, np.float64),
+            triangles=np.asarray(self.triangles, np.int64),
+            fiber=np.asarray(self.fiber, np.int64),
+            radius=np.asarray(self.radius, np.float64),
+        )
+        _check(len(self.triangles) > 0, "the surface has no triangle")
+        _check(bool(np.isfinite(self.points).all()), "a surface point is not finite")
+        _check(self.fiber.shape == (len(self.triangles),), "not every triangle names its fiber")
+        _check(
+            bool((self.fiber >= 0).all() and (self.fiber < len(self.radius)).all()),
+            "a triangle names a fiber that the mat does not have",
+        )
+        open_edges = unmatched_edges(self.triangles)
+        _check(open_edges == 0, f"the surface is not closed: {open_edges} edges lack their partner")
+        _check(self.volume > 0, "the surface is inside out")
+
+    @property
+    def volume(self) -> float:
+        """Solid volume [m3]."""
+        return enclosed_volume(self.points, self.triangles)
+
+    @property
+    def solidity(self) -> float:
+        """Solid volume over the slab's volume [-]."""
+        return self.volume / self.slab.volume
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FluidDomain:
+    """The air in the duct, as a closed surface whose every triangle lies in one patch.
+
+    Parameters
+    ----------
+    points : (n, 3) array [m]
+    triangles : (m, 3) int array
+        Counterclockwise seen from outside the air.
+    patch : (m,) int array
+        Index into `patches`.
+    patches : tuple of str
+        ``inlet`` (lowest z), ``outlet`` (highest z), ``xmin``, ``xmax``, ``ymin``, ``ymax``, ``fibers``.
+    fiber : (m,) int array
+        Fiber that a triangle came from; -1 on the duct's planes.
+    radius : (fibers,) array [m]
+        Radius of each fiber, as in `Mat`.
+    box : Box [m]
+        The duct with both plenums.
+    slab : Box [m]
+        The mat's slab within it.
+    """
+
+    points: Floats
+    triangles: Ints
+    patch: Ints
+    patches: tuple[str, ...]
+    fiber: Ints
+    radius: Floats
+    box: Box
+    slab: Box
+
+    def __post_init__(self) -> None:
+        _freeze(
+            self,
+            points=np.asarray(self.points, np.float64),
+            triangles=np.asarray(self.triangles, np.int64),
+            patch=np.asarray(self.patch, np.int64),
+            fiber=np.asarray(self.fiber, np.int64),
+            radius=np.asarray(self.radius, np.float64),
+        )
+        _check(self.patch.shape == (len(self.triangles),), "not every triangle names its patch")
+        _check(self.fiber.shape == (len(self.triangles),), "not every triangle names its fiber")
+        missing = sorted({*range(len(self.patches))} - set(np.unique(self.patch).tolist()))
+        _check(not missing, f"no triangle in patch {', '.join(self.patches[k] for k in missing)}")
+        _check(
+            bool((self.patch >= 0).all() and (self.patch < len(self.patches)).all()),
+            "a triangle names a patch that does not exist",
+        )
+        open_edges = unmatched_edges(self.triangles)
+        _check(open_edges == 0, f"the duct's surface is not closed: {open_edges} edges lack their partner")
+        _check(self.volume > 0, "the duct's surface is inside out")
+
+    @property
+    def volume(self) -> float:
+        """Volume of the air [m3]."""
+        return enclosed_volume(self.points, self.triangles)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class TetMesh:
+    """The air in tetrahedra.
+
+    Parameters
+    ----------
+    points : (n, 3) array [m]
+    tets : (m, 4) int array
+        Vertices 0, 1, 2 counterclockwise seen from vertex 3's far side: every volume is above 0.
+    faces : (b, 3) int array
+        Boundary triangles, counterclockwise seen from outside the air.
+    patch : (b,) int array
+        Index into `patches` of each boundary triangle.
+    patches : tuple of str
+        Names; none is empty.
+    slab : Box [m]
+        The mat's slab within the duct.
+    """
+
+    points: Floats
+    tets: Ints
+    faces: Ints
+    patch: Ints
+    patches: tuple[str, ...]
+    slab: Box
+
+    def __post_init__(self) -> None:
+        _freeze(
+            self,
+            points=np.asarray(self.points, np.float64),
+            tets=np.asarray(self.tets, np.int64),
+            faces=np.asarray(self.faces, np.int64),
+            patch=np.asarray(self.patch, np.int64),
+        )
+        flat = np.flatnonzero(volumes(self.points, self.tets) <= 0)
+        _check(
+            len(flat) == 0,
+            f"{len(flat)} of {len(self.tets)} tetrahedra have no positive volume, first {flat[:1].tolist()}",
+        )
+        _check(self.patch.shape == (len(self.faces),), "not every boundary face names its patch")
+        present = set(np.unique(self.patch).tolist())
+        _check(present <= set(range(len(self.patches))), "a boundary face names a patch that does not exist")
+        missing = [name for k, name in enumerate(self.patches) if k not in present]
+        _check(not missing, f"no boundary face in patch {', '.join(missing)}")
+
+    @property
+    def volume(self) -> float:
+        """Volume of all tetrahedra [m3]."""
+        return float(volumes(self.points, self.tets).sum())
+
+
+@dataclass(frozen=True, slots=True)
+class Patch:
+    """A named run of boundary faces: ``faces[start:start + count]``."""
+
+    name: str
+    start: int
+    count: int
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FaceMesh:
+    """A mesh the way a finite-volume solver holds it: polygons between an owner and a neighbour.
+
+    Parameters
+    ----------
+    points : (n, 3) array [m]
+    corners : (k,) int array
+        Vertices of all faces, one face after the other.
+    offsets : (faces + 1,) int array
+        Face f is ``corners[offsets[f]:offsets[f + 1]]``, counterclockwise seen from outside its owner.
+    owner : (faces,) int array
+        The cell of lower index at each face.
+    neighbour : (internal,) int array
+        The other cell of the first `internal` faces; these are sorted by (owner, neighbour).
+    cells : int
+    patches : tuple of Patch
+        Boundary faces, in runs that follow each other from face `internal` to the last.
+    """
+
+    points: Floats
+    corners: Ints
+    offsets: Ints
+    owner: Ints
+    neighbour: Ints
+    cells: int
+    patches: tuple[Patch, ...]
+
+    def __post_init__(self) -> None:
+        _freeze(
+            self,
+            points=np.asarray(self.points, np.float64),
+            corners=np.asarray(self.corners, np.int64),
+            offsets=np.asarray(self.offsets, np.int64),
+            owner=np.asarray(self.owner, np.int64),
+            neighbour=np.asarray(self.neighbour, np.int64),
+        )
+        _check(len(self.offsets) == len(self.owner) + 1, "offsets and owners differ in length")
+        _check(int(self.offsets[-1]) == len(self.corners), "offsets do not span the corners")
+        internal = len(self.neighbour)
+        _check(bool((self.owner[:internal] < self.neighbour).all()), "an owner is not below its neighbour")
+        end = internal
+        for patch in self.patches:
+            _check(patch.start == end, f"patch {patch.name} does not start where the one before ends")
+            end += patch.count
+        _check(end == len(self.owner), "the patches do not cover the boundary")
+
+    @property
+    def faces(self) -> int:
+        """Number of faces, internal and boundary."""
+        return len(self.owner)
+
+    @property
+    def internal(self) -> int:
+        """Number of faces between two cells."""
+        return len(self.neighbour)
+
+
+@dataclass(frozen=True, slots=True)
+class Metric:
+    """One measure of quality over a mesh.
+
+    `limit` is what a good mesh keeps to (`worst_is` says on which side), None where the measure is only told;
+    `over_limit` counts what breaks it; `worst` lists (index, value, (x, y, z) [m]) of the worst few.
+    """
+
+    name: str
+    unit: str
+    where: str
+    min: float
+    mean: float
+    p99: float
+    max: float
+    limit: float | None
+    worst_is: str
+    over_limit: int
+    worst: tuple[tuple[int, float, tuple[float, float, float]], ...]
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class QualityReport:
+    """What the mesh is like and whether it may go to a solver."""
+
+    cells: int
+    points: int
+    faces: int
+    internal_faces: int
+    patches: dict[str, int]
+    volume: float
+    metrics: dict[str, Metric]
+    verdict: str
+    reasons: tuple[str, ...] = ()
+
+    @property
+    def passed(self) -> bool:
+        """Whether every limit holds."""
+        return self.verdict == "pass"
+
+
+@dataclass(frozen=True, slots=True)
+class ModelRow:
+    """One pressure-drop model with the three solidities [Pa]; `notes` names what is outside its range."""
+
+    nominal: float
+    surface: float
+    mesh: float
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Pressure drop by analytical models from three solidities, side by side."""
+
+    solidity: dict[str, float]
+    thickness: float
+    fiber_diameter: float
+    face_velocity: float
+    models: dict[str, ModelRow] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Flow:
+    """Air on its way into the duct.
+
+    Parameters
+    ----------
+    face_velocity : float [m/s]
+        Flow rate over the face's area.
+    temperature : float [K]
+    viscosity : float [Pa s]
+        Dynamic.
+    density : float [kg/m3]
+    mean_free_path : float [m]
+    """
+
+    face_velocity: float
+    temperature: float
+    viscosity: float
+    density: float
+    mean_free_path: float
+
+    def __post_init__(self) -> None:
+        for name in ("face_velocity", "temperature", "viscosity", "density", "mean_free_path"):
+            _check(getattr(self, name) > 0, f"{name} is not above 0")

@@ -1,0 +1,1 @@
+"""The mat in its duct: the air as a closed surface with named patches."""

@@ -1,0 +1,1 @@
+"""Cases and meshes that solvers and viewers read."""

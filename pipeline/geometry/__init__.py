@@ -1,0 +1,1 @@
+"""Numerics on plain arrays: no stage's nouns, no files."""

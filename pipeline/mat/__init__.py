@@ -1,0 +1,1 @@
+"""Random fiber mats: drawn, deposited, measured, exchanged."""

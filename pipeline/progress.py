@@ -1,0 +1,14 @@
+"""How a stage tells what it is doing, without knowing who listens."""
+
+from typing import Protocol
+
+
+class Progress(Protocol):
+    """Called by a stage whenever there is something to tell."""
+
+    def __call__(self, what: str, done: float | None = None) -> None:
+        """Tell what is being done, and which share of it, 0 to 1, where that is known."""
+
+
+def silent(what: str, done: float | None = None) -> None:
+    """Listen to nothing."""

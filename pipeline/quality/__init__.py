@@ -1,0 +1,1 @@
+"""What a mesh is like, by the solver's own definitions."""

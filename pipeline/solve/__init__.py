@@ -1,0 +1,1 @@
+"""OpenFOAM runs of an exported case."""

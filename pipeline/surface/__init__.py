@@ -1,0 +1,1 @@
+"""The fibers' outside as one closed surface."""

@@ -1,0 +1,188 @@
+"""Text with a unit at the door, SI floats inside.
+
+The annotated types below are what a case file's fields are made of. From a file they take text with a unit
+("1.4 um") and refuse a bare number, because a bare number is where a factor of a million hides; from Python
+they also take an SI float. pint is loaded only when the first text is read.
+"""
+
+import math
+import re
+from functools import cache
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema
+
+if TYPE_CHECKING:
+    import pint
+
+# A product of one number and one unit: pint would also evaluate formulas, which is no business of a case file.
+_NUMBER_AND_UNIT = re.compile(
+    r"\s*(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>[A-Za-zµμ°%][A-Za-z0-9µμ°%/*^ -]{0,30}|)\s*"
+)
+
+_RATIO_UNITS = ("", "%", "percent")
+
+FROM_FILE = {"source": "file"}
+"""Validation context of text that a person wrote: a bare number is refused where a unit belongs."""
+
+
+@cache
+def _registry() -> "pint.UnitRegistry[float]":
+    import pint
+
+    # "degC" is an offset unit: let pint turn it into kelvin instead of refusing it.
+    return pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
+
+
+def parse(text: str, unit: str) -> float:
+    """Read a number with a unit and give it in `unit`.
+
+    Parameters
+    ----------
+    text : str
+        For example ``"1.4 um"``, ``"2.5 cm/s"``, ``"20 degC"``, ``"9.6 %"``.
+    unit : str
+        The SI unit of the answer, as pint spells it; ``""`` for a plain ratio.
+
+    Returns
+    -------
+    float [unit]
+
+    Raises
+    ------
+    ValueError
+        If the text is no number with a unit, or the unit measures something else.
+
+    Examples
+    --------
+    >>> parse("1.5 um", "m")
+    1.5e-06
+    >>> parse("20 degC", "kelvin")
+    293.15
+    """
+    match = _NUMBER_AND_UNIT.fullmatch(text)
+    # pint counts "GiB" and "" alike as ratios
+    if match is None or (unit == "") != (match["unit"].strip() in _RATIO_UNITS):
+        raise ValueError(_advice(text, unit))
+    from tokenize import TokenError
+
+    import pint
+
+    try:
+        quantity = _registry().Quantity(float(match["number"]), match["unit"].strip() or "dimensionless")
+        value = float(quantity.to(unit or "dimensionless").magnitude)
+    except (pint.PintError, ValueError, TypeError, AttributeError, ArithmeticError, AssertionError, TokenError) as odd:
+        raise ValueError(_advice(text, unit)) from odd
+    if not math.isfinite(value):
+        raise ValueError(f"{text!r} is not a finite number")
+    # 1.4 um must become the same float as 1.4e-6, or two spellings of one case would differ
+    return float(f"{value:.15g}")
+
+
+_EXAMPLES = {
+    "m": "1.4 um",
+    "m/s": "2.5 cm/s",
+    "kelvin": "20 degC",
+    "Pa": "320 Pa",
+    "Pa*s": "1.8e-5 Pa*s",
+    "kg/m^3": "1.2 kg/m^3",
+    "s": "20 min",
+    "byte": "4 GiB",
+    "": "9.5 %",
+}
+
+
+def _advice(value: object, unit: str) -> str:
+    example = _EXAMPLES.get(unit, f"1 {unit}")
+    if unit == "":
+        return f'write a plain number or a percentage as text, like 0.095 or "{example}", not {value!r}'
+    return f'write a number with a unit as text, like "{example}", not {value!r}'
+
+
+def quantity_reader(unit: str) -> BeforeValidator:
+    """Make the pydantic validator that turns text into an SI float."""
+
+    def read(value: Any, info: ValidationInfo) -> float:
+        if isinstance(value, str):
+            return parse(value, unit)
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        if is_number and (unit == "" or info.context is not FROM_FILE):
+            return float(value)
+        raise ValueError(_advice(value, unit))
+
+    return BeforeValidator(read)
+
+
+def _schema(unit: str, meaning: str) -> WithJsonSchema:
+    text = {"type": "string", "description": meaning, "examples": [_EXAMPLES[unit]]}
+    return WithJsonSchema({"anyOf": [{"type": "number"}, text]} if unit == "" else text)
+
+
+Length = Annotated[
+    float, quantity_reader("m"), Field(gt=0, allow_inf_nan=False), _schema("m", "a length above 0 with its unit")
+]
+"""A length above 0 [m]."""
+
+Distance = Annotated[
+    float, quantity_reader("m"), Field(ge=0, allow_inf_nan=False), _schema("m", "a length of 0 or more with its unit")
+]
+"""A length of 0 or more [m]."""
+
+Velocity = Annotated[
+    float, quantity_reader("m/s"), Field(gt=0, allow_inf_nan=False), _schema("m/s", "a velocity above 0 with its unit")
+]
+"""A velocity above 0 [m/s]."""
+
+Temperature = Annotated[
+    float,
+    quantity_reader("kelvin"),
+    Field(gt=0, allow_inf_nan=False),
+    _schema("kelvin", "a temperature with its unit"),
+]
+"""An absolute temperature [K]."""
+
+Pressure = Annotated[
+    float, quantity_reader("Pa"), Field(gt=0, allow_inf_nan=False), _schema("Pa", "a pressure above 0 with its unit")
+]
+"""A pressure or pressure difference above 0 [Pa]."""
+
+Viscosity = Annotated[
+    float,
+    quantity_reader("Pa*s"),
+    Field(gt=0, allow_inf_nan=False),
+    _schema("Pa*s", "a dynamic viscosity above 0 with its unit"),
+]
+"""A dynamic viscosity above 0 [Pa s]."""
+
+Density = Annotated[
+    float,
+    quantity_reader("kg/m^3"),
+    Field(gt=0, allow_inf_nan=False),
+    _schema("kg/m^3", "a density above 0 with its unit"),
+]
+"""A density above 0 [kg/m3]."""
+
+Duration = Annotated[
+    float, quantity_reader("s"), Field(gt=0, allow_inf_nan=False), _schema("s", "a time above 0 with its unit")
+]
+"""A time span above 0 [s]."""
+
+Memory = Annotated[
+    float, quantity_reader("byte"), Field(gt=0, allow_inf_nan=False), _schema("byte", "an amount of memory")
+]
+"""An amount of memory above 0 [byte]."""
+
+Fraction = Annotated[
+    float, quantity_reader(""), Field(gt=0, lt=1, allow_inf_nan=False), _schema("", "a fraction between 0 and 1")
+]
+"""A ratio strictly between 0 and 1, as a number or a percentage [-]."""
+
+Ratio = Annotated[
+    float, quantity_reader(""), Field(ge=0, allow_inf_nan=False), _schema("", "a plain number of 0 or more")
+]
+"""A plain number of 0 or more, as a number or a percentage [-]."""
+
+PositiveRatio = Annotated[
+    float, quantity_reader(""), Field(gt=0, allow_inf_nan=False), _schema("", "a plain number above 0")
+]
+"""A plain number above 0, as a number or a percentage [-]."""
