@@ -10,6 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from pipeline.geometry.box import Box
+from pipeline.geometry.faces import compacted, patch_of_faces, tet_faces
+from pipeline.geometry.polyhedra import Polyhedra, polyhedra
 from pipeline.geometry.tets import volumes
 from pipeline.geometry.triangles import enclosed_volume, unmatched_edges
 
@@ -285,6 +287,32 @@ class TetMesh:
         """Volume of all tetrahedra [m3]."""
         return float(volumes(self.points, self.tets).sum())
 
+    def face_mesh(self) -> "FaceMesh":
+        """Give the mesh as faces between cells, in the order that a solver wants.
+
+        Cells are renumbered by reverse Cuthill-McKee, boundary faces stand patch after patch in the order of
+        `patches`, and points that no tetrahedron uses are dropped.
+        """
+        found = tet_faces(self.tets)
+        internal = len(found.neighbour)
+        patch = patch_of_faces(found.triangles[internal:], self.faces, self.patch)
+        order = np.concatenate([np.arange(internal), internal + np.argsort(patch, kind="stable")])
+        counts = np.bincount(patch, minlength=len(self.patches))
+        starts = internal + np.cumsum(counts) - counts
+        points, corners = compacted(self.points, found.triangles[order].ravel())
+        return FaceMesh(
+            points=points,
+            corners=corners,
+            offsets=np.arange(0, len(corners) + 1, 3),
+            owner=found.owner[order],
+            neighbour=found.neighbour,
+            cells=len(self.tets),
+            patches=tuple(
+                Patch(name, int(start), int(count))
+                for name, start, count in zip(self.patches, starts, counts, strict=True)
+            ),
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class Patch:
@@ -351,6 +379,10 @@ class FaceMesh:
     def internal(self) -> int:
         """Number of faces between two cells."""
         return len(self.neighbour)
+
+    def polyhedra(self) -> Polyhedra:
+        """Areas and centers of the faces, volumes and centers of the cells."""
+        return polyhedra(self.points, self.corners, self.offsets, self.owner, self.neighbour, self.cells)
 
 
 @dataclass(frozen=True, slots=True)

@@ -88,6 +88,7 @@ _EXAMPLES = {
     "kg/m^3": "1.2 kg/m^3",
     "s": "20 min",
     "byte": "4 GiB",
+    "degree": "70 deg",
     "": "9.5 %",
 }
 
@@ -171,6 +172,14 @@ Memory = Annotated[
     float, quantity_reader("byte"), Field(gt=0, allow_inf_nan=False), _schema("byte", "an amount of memory")
 ]
 """An amount of memory above 0 [byte]."""
+
+Angle = Annotated[
+    float,
+    quantity_reader("degree"),
+    Field(gt=0, lt=180, allow_inf_nan=False),
+    _schema("degree", "an angle with its unit"),
+]
+"""An angle between 0 and 180, in degrees as mesh tools count them [degree]."""
 
 Fraction = Annotated[
     float, quantity_reader(""), Field(gt=0, lt=1, allow_inf_nan=False), _schema("", "a fraction between 0 and 1")

@@ -1,0 +1,38 @@
+"""Which files are written for solvers and viewers."""
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field, field_validator
+
+Format = Literal["openfoam", "vtk", "fluent", "gmsh", "abaqus", "nastran", "su2", "med", "cgns", "stl"]
+Encoding = Literal["binary", "ascii"]
+Dialect = Literal["com", "org"]
+FiberWall = Literal["no_slip", "slip"]
+
+
+class ExportSettings(BaseModel):
+    """The files that the mesh ends in."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    formats: tuple[Format, ...] = Field(
+        default=("openfoam", "vtk"), min_length=1, description="Formats to write, each into its own folder."
+    )
+    encoding: Encoding = Field(
+        default="binary", description="How OpenFOAM's mesh is written; ascii has all 17 digits and ten times the size."
+    )
+    dialect: Dialect = Field(
+        default="com", description="Whose OpenFOAM the case is written for: OpenFOAM.com or OpenFOAM.org."
+    )
+    fiber_wall: FiberWall = Field(
+        default="no_slip",
+        description="What the air does on the fibers: stand still, or slip by the length that belongs to its mean "
+        "free path (needed where a fiber is thinner than about 10 um).",
+    )
+
+    @field_validator("formats")
+    @classmethod
+    def _each_once(cls, formats: tuple[Format, ...]) -> tuple[Format, ...]:
+        if len(set(formats)) < len(formats):
+            raise ValueError("names a format twice")
+        return formats

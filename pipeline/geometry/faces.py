@@ -1,0 +1,156 @@
+"""Tetrahedra to faces between an owner and a neighbour, in the order that a finite-volume solver wants."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+from pipeline.geometry.tets import FACES
+from pipeline.geometry.triangles import Floats, Ints
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class TetFaces:
+    """Every triangle of a tetrahedral mesh once, in solver order.
+
+    Parameters
+    ----------
+    triangles : (faces, 3) int array
+        Counterclockwise seen from outside the owner; internal faces first, sorted by (owner, neighbour), then
+        the boundary faces in the order of their owners.
+    owner : (faces,) int array
+        New number of the cell of lower number.
+    neighbour : (internal,) int array
+        New number of the other cell of the internal faces.
+    order : (cells,) int array
+        New cell k is the old tetrahedron ``order[k]``.
+    """
+
+    triangles: Ints
+    owner: Ints
+    neighbour: Ints
+    order: Ints
+
+
+def tet_faces(tets: Ints) -> TetFaces:
+    """Match the tetrahedra's faces, and renumber the cells so that neighbours stand close to each other.
+
+    Parameters
+    ----------
+    tets : (m, 4) int array
+        Positive tetrahedra.
+
+    Returns
+    -------
+    TetFaces
+
+    Raises
+    ------
+    ValueError
+        If more than two tetrahedra share a face.
+
+    Notes
+    -----
+    Reverse Cuthill-McKee (Cuthill & McKee 1969; George 1971) narrows the matrix's band, which saves a fifth to
+    a quarter of the solver's time. A face keeps the vertex order of its owner, so its area vector points from the
+    lower cell to the higher.
+
+    Examples
+    --------
+    >>> found = tet_faces(np.array([[0, 1, 2, 3], [1, 2, 4, 3]]))
+    >>> len(found.triangles), len(found.neighbour)
+    (7, 1)
+    """
+    triangles = tets[:, FACES].reshape(-1, 3)
+    cell = np.repeat(np.arange(len(tets)), 4)
+    by_key, same = _matches(triangles)
+    first = by_key[:-1][same]
+    second = by_key[1:][same]
+    order = _narrow_band(cell[first], cell[second], len(tets))
+    new = np.empty(len(tets), np.int64)
+    new[order] = np.arange(len(tets))
+    number = new[cell]
+
+    swap = number[first] > number[second]
+    ours, theirs = np.where(swap, second, first), np.where(swap, first, second)
+    sort = np.argsort(number[ours] * len(tets) + number[theirs], kind="stable")
+    ours, theirs = ours[sort], theirs[sort]
+
+    single = np.ones(len(triangles), bool)
+    single[first] = single[second] = False
+    outside = np.flatnonzero(single)
+    outside = outside[np.argsort(number[outside], kind="stable")]
+    faces = np.concatenate([ours, outside])
+    return TetFaces(triangles[faces], number[faces], number[theirs], order)
+
+
+def _matches(triangles: Ints) -> tuple[Ints, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]:
+    # equal triangles stand next to each other in the returned order; `same[k]` says that k and k + 1 are equal
+    low, mid, high = np.sort(triangles, axis=1).T
+    span = int(triangles.max(initial=0)) + 1
+    pair = low * span + mid
+    by_key = np.lexsort((high, pair))
+    same = (pair[by_key][1:] == pair[by_key][:-1]) & (high[by_key][1:] == high[by_key][:-1])
+    crowded = int((same[1:] & same[:-1]).sum())
+    if crowded:
+        raise ValueError(f"{crowded} faces belong to more than two tetrahedra")
+    return by_key, same
+
+
+def _narrow_band(first: Ints, second: Ints, cells: int) -> Ints:
+    # int32 indices, since the ordering is compiled for those
+    links = np.concatenate([first, second]).astype(np.int32), np.concatenate([second, first]).astype(np.int32)
+    graph = coo_array((np.ones(2 * len(first), np.int8), links), shape=(cells, cells)).tocsr()
+    return np.asarray(reverse_cuthill_mckee(graph, symmetric_mode=True), np.int64)
+
+
+def patch_of_faces(triangles: Ints, named: Ints, patch: Ints) -> Ints:
+    """Look up the patch of boundary triangles among named ones, whatever corner either starts with.
+
+    Parameters
+    ----------
+    triangles : (b, 3) int array
+    named : (b, 3) int array
+        The same triangles in another order.
+    patch : (b,) int array
+        Patch of each row of `named`.
+
+    Returns
+    -------
+    (b,) int array
+        Patch of each row of `triangles`.
+
+    Raises
+    ------
+    ValueError
+        If the two lists do not hold the same triangles.
+    """
+    mine, given = np.sort(triangles, axis=1), np.sort(named, axis=1)
+    sort_mine, sort_given = np.lexsort(mine.T), np.lexsort(given.T)
+    if mine.shape != given.shape or not (mine[sort_mine] == given[sort_given]).all():
+        raise ValueError(
+            f"the {len(given)} faces that name a patch are not the {len(mine)} faces of one tetrahedron only"
+        )
+    result = np.empty(len(mine), np.int64)
+    result[sort_mine] = patch[sort_given]
+    return result
+
+
+def compacted(points: Floats, corners: Ints) -> tuple[Floats, Ints]:
+    """Drop the points that no corner uses.
+
+    Parameters
+    ----------
+    points : (n, 3) array [m]
+    corners : int array of any shape
+
+    Returns
+    -------
+    points : (used, 3) array [m]
+    corners : int array
+        The same corners by their new numbers.
+    """
+    used = np.zeros(len(points), bool)
+    used[corners] = True
+    return points[used], (np.cumsum(used) - 1)[corners]
