@@ -1,0 +1,57 @@
+"""The case file's ``[flow]``: the air, its speed, and the particles it carries."""
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from pipeline.analytics import air
+from pipeline.analytics.pressure_models import PressureModelName
+from pipeline.analytics.single_fiber import PresetName
+from pipeline.data import Flow
+from pipeline.units import Density, Length, Pressure, Temperature, Velocity, Viscosity
+
+
+class FlowSettings(BaseModel):
+    """Air on its way into the duct, and the particles it carries."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    face_velocity: Velocity = Field(
+        0.025, description="flow rate over the face's area; HEPA media are tested at 2.5 cm/s"
+    )
+    temperature: Temperature = Field(default=293.0, description="absolute temperature of the air")
+    pressure: Pressure = Field(default=air.REFERENCE_PRESSURE, description="absolute pressure of the air")
+    viscosity: Viscosity | None = Field(
+        default=None, description="dynamic viscosity of the air; from the temperature by Sutherland's law unless given"
+    )
+    density: Density | None = Field(
+        default=None, description="density of the air; from temperature and pressure as an ideal gas unless given"
+    )
+    mean_free_path: Length | None = Field(
+        default=None,
+        description="mean free path of the air; 65.3 nm at 293 K and 1 atm, scaled by Willeke's law, unless given",
+    )
+    particle_diameter: Length = Field(default=300e-9, description="particle size for which efficiencies are told")
+    particle_density: Density = Field(default=1000.0, description="density of the particles")
+    preset: PresetName = Field(
+        default="paper",
+        description="single-fiber model: what the paper computed, what its Table A6 computes, or Hinds' textbook form",
+    )
+    pressure_model: PressureModelName = Field(
+        default="davies", description="pressure-drop model that a mat with mat.stop.pressure_drop is grown by"
+    )
+
+    def flow(self) -> Flow:
+        """Air with every property known.
+
+        Examples
+        --------
+        >>> flow = FlowSettings(face_velocity=0.1).flow()
+        >>> f"{flow.viscosity:.3e} {flow.density:.3f} {flow.mean_free_path:.2e}"
+        '1.813e-05 1.205 6.53e-08'
+        """
+        return Flow(
+            face_velocity=self.face_velocity,
+            temperature=self.temperature,
+            viscosity=self.viscosity or air.viscosity(self.temperature),
+            density=self.density or air.density(self.temperature, self.pressure),
+            mean_free_path=self.mean_free_path or air.mean_free_path(self.temperature, self.pressure),
+        )
