@@ -44,6 +44,10 @@ def _check(holds: bool, message: str) -> None:
         raise ValueError(message)
 
 
+def _all_within(numbers: Ints, count: int) -> bool:
+    return numbers.size == 0 or (int(numbers.min()) >= 0 and int(numbers.max()) < count)
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class Mat:
     """A fiber mat: one polyline per fiber, in a slab that the flow crosses along +z.
@@ -361,8 +365,15 @@ class FaceMesh:
             neighbour=np.asarray(self.neighbour, np.int64),
         )
         _check(len(self.offsets) == len(self.owner) + 1, "offsets and owners differ in length")
-        _check(int(self.offsets[-1]) == len(self.corners), "offsets do not span the corners")
+        _check(self.points.ndim == 2 and self.points.shape[1] == 3, "points have three coordinates")
+        _check(bool(np.isfinite(self.points).all()), "a point is not finite")
+        spans = self.offsets[0] == 0 and self.offsets[-1] == len(self.corners)
+        _check(bool(spans and (np.diff(self.offsets) >= 3).all()), "the offsets do not cut the corners into polygons")
+        _check(_all_within(self.corners, len(self.points)), "a face has a corner that is no point")
+        _check(_all_within(self.owner, self.cells), "a face has an owner that is no cell")
+        _check(_all_within(self.neighbour, self.cells), "a face has a neighbour that is no cell")
         internal = len(self.neighbour)
+        _check(internal <= len(self.owner), "there are more neighbours than owners")
         _check(bool((self.owner[:internal] < self.neighbour).all()), "an owner is not below its neighbour")
         end = internal
         for patch in self.patches:
@@ -389,8 +400,22 @@ class FaceMesh:
 class Metric:
     """One measure of quality over a mesh.
 
-    `limit` is what a good mesh keeps to (`worst_is` says on which side), None where the measure is only told;
-    `over_limit` counts what breaks it; `worst` lists (index, value, (x, y, z) [m]) of the worst few.
+    Parameters
+    ----------
+    name, unit, source : str
+        Unit ``"1"`` where it has none; `source` says whose definition and limit these are.
+    where : str
+        ``"cells"``, ``"faces"`` or ``"internal faces"``.
+    min, mean, p99, max : float [unit]
+        The mean non-orthogonality is the angle of the mean cosine, as `checkMesh` prints it.
+    limit : float [unit], optional
+        What a good mesh keeps to.
+    worst_is : str
+        ``"largest"`` or ``"smallest"``: on which side of the limit trouble lies.
+    over_limit : int
+        How many cells or faces break the limit.
+    worst : tuple of (index, value, (x, y, z) [m])
+        The worst few, worst first.
     """
 
     name: str
@@ -409,7 +434,12 @@ class Metric:
 
 @dataclass(frozen=True, slots=True)
 class QualityReport:
-    """What the mesh is like and whether it may go to a solver."""
+    """What the mesh is like and whether it may go to a solver.
+
+    `verdict` is ``"pass"`` where every limit holds, ``"warn"`` where the only trouble is faces above the limit of
+    non-orthogonality but below 90 degrees, which solvers take with a loss of accuracy, and ``"fail"`` otherwise;
+    `reasons` has a sentence for each limit that does not hold. `patches` counts faces, `volume` is in m3.
+    """
 
     cells: int
     points: int

@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from pipeline.geometry.tets import FACES
 from pipeline.geometry.triangles import Floats, Ints
@@ -99,6 +97,9 @@ def _matches(triangles: Ints) -> tuple[Ints, "np.ndarray[tuple[int], np.dtype[np
 
 
 def _narrow_band(first: Ints, second: Ints, cells: int) -> Ints:
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import reverse_cuthill_mckee
+
     # int32 indices, since the ordering is compiled for those
     links = np.concatenate([first, second]).astype(np.int32), np.concatenate([second, first]).astype(np.int32)
     graph = coo_array((np.ones(2 * len(first), np.int8), links), shape=(cells, cells)).tocsr()
@@ -154,3 +155,44 @@ def compacted(points: Floats, corners: Ints) -> tuple[Floats, Ints]:
     used = np.zeros(len(points), bool)
     used[corners] = True
     return points[used], (np.cumsum(used) - 1)[corners]
+
+
+def tets_of_faces(triangles: Ints, owner: Ints, neighbour: Ints, cells: int) -> Ints:
+    """Give the tetrahedra that faces enclose: the way back from `tet_faces`.
+
+    Parameters
+    ----------
+    triangles : (faces, 3) int array
+        Counterclockwise seen from outside the owner.
+    owner, neighbour : (faces,) and (internal,) int arrays
+    cells : int
+
+    Returns
+    -------
+    (cells, 4) int array
+        Positive tetrahedra.
+
+    Raises
+    ------
+    ValueError
+        If a cell has not four faces.
+
+    Examples
+    --------
+    >>> tets_of_faces(np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]), np.zeros(4, int), np.empty(0, int), 1)
+    array([[1, 3, 2, 0]])
+    """
+    faces_of = np.bincount(owner, minlength=cells) + np.bincount(neighbour, minlength=cells)
+    odd = int((faces_of != 4).sum())
+    if odd:
+        raise ValueError(f"{odd} cells are no tetrahedra")
+    # each vertex is in three of the four faces, so the sum of all corners gives the one that a face lacks
+    inner = len(neighbour)
+    face_sum = triangles.sum(axis=1)
+    total = np.zeros(cells, np.int64)
+    np.add.at(total, owner, face_sum)
+    np.add.at(total, neighbour, face_sum[:inner])
+    base = np.empty((cells, 3), np.int64)
+    base[neighbour] = triangles[:inner]
+    base[owner] = triangles[:, [0, 2, 1]]
+    return np.column_stack([base, total // 3 - base.sum(axis=1)])

@@ -1,1 +1,6 @@
 """What a mesh is like, by the solver's own definitions."""
+
+from pipeline.quality.judge import cell_fields, judge, measure
+from pipeline.quality.settings import QualitySettings
+
+__all__ = ["QualitySettings", "cell_fields", "judge", "measure"]

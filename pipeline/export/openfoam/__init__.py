@@ -1,0 +1,6 @@
+"""OpenFOAM: the mesh, the complete case around it, and the way back."""
+
+from pipeline.export.openfoam.case import write_openfoam
+from pipeline.export.openfoam.read import read_openfoam
+
+__all__ = ["read_openfoam", "write_openfoam"]

@@ -1,0 +1,162 @@
+"""Reads `constant/polyMesh`, in text and in binary, from any OpenFOAM tool."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from pipeline.data import FaceMesh, Ints, Patch
+from pipeline.errors import StageError
+
+_COMMENT = re.compile(rb"/\*.*?\*/|//[^\n]*", re.DOTALL)
+_HEADER = re.compile(rb"FoamFile\s*\{(?P<body>.*?)\}\s*", re.DOTALL)
+_COUNT = re.compile(rb"\s*(?P<count>\d{1,10})\s*")
+LARGEST_FILE = 20_000_000_000
+"""No mesh file that this machine could hold in memory is larger than this many bytes."""
+
+
+def read_openfoam(case: Path) -> FaceMesh:
+    """Read the mesh of an OpenFOAM case.
+
+    Parameters
+    ----------
+    case : Path
+        A case folder, or its `polyMesh` folder.
+
+    Returns
+    -------
+    FaceMesh
+
+    Raises
+    ------
+    StageError
+        If there is no mesh, or a file is damaged or of a kind that is not read (compressed, 64-bit labels are).
+    """
+    folder = case if (case / "points").is_file() else case / "constant" / "polyMesh"
+    try:
+        points = _List(folder / "points").floats(3)
+        corners, offsets = _read_faces(_List(folder / "faces"))
+        owner = _List(folder / "owner").labels()
+        neighbour = _List(folder / "neighbour").labels()
+        patches = _read_boundary(_contents(folder / "boundary"))
+        # older tools pad the neighbours of boundary faces with -1
+        neighbour = neighbour[neighbour >= 0]
+        cells = int(max(owner.max(initial=-1), neighbour.max(initial=-1))) + 1
+        return FaceMesh(points, corners, offsets, owner, neighbour, cells, patches)
+    except (OSError, ValueError) as problem:
+        detail = f"{problem.strerror}: {problem.filename}" if isinstance(problem, OSError) else str(problem)
+        raise StageError(f"cannot read the mesh in {folder}: {detail}") from problem
+
+
+def _contents(path: Path) -> bytes:
+    if not path.exists() and path.with_name(path.name + ".gz").exists():
+        raise ValueError(f"{path.name} is compressed; run gunzip in the folder")
+    if path.stat().st_size > LARGEST_FILE:
+        raise ValueError(f"{path.name} is larger than {LARGEST_FILE} bytes")
+    return path.read_bytes()
+
+
+class _List:
+    """One file: its header understood, its lists read one after the other."""
+
+    def __init__(self, path: Path) -> None:
+        content = _contents(path)
+        # a comment never follows the header's end, and binary data could look like one
+        banner = _HEADER.search(content[:100_000])
+        if banner is None:
+            raise ValueError(f"{path.name} has no FoamFile header")
+        header = banner["body"].decode("latin-1")
+        self.name = path.name
+        self.binary = bool(re.search(r"format\s+binary", header))
+        self.kind = (re.search(r"class\s+(\w+)", header) or ["", ""])[1]
+        self.label = np.dtype("<i8" if "label=64" in header else "<i4")
+        self.scalar = np.dtype("<f4" if "scalar=32" in header else "<f8")
+        if "MSB" in header:
+            raise ValueError(f"{path.name} was written on a big-endian machine")
+        self.rest = content[banner.end() :]
+        if not self.binary:
+            self.rest = _COMMENT.sub(b" ", self.rest)
+        else:
+            self.rest = re.sub(rb"\A(\s*//[^\n]*\n)*", b"", self.rest)
+
+    def labels(self) -> Ints:
+        return self._array(self.label, 1, np.dtype(np.int64)).ravel().astype(np.int64)
+
+    def floats(self, components: int) -> npt.NDArray[np.float64]:
+        return self._array(self.scalar, components, np.dtype(np.float64)).astype(np.float64)
+
+    def _array(
+        self, raw: np.dtype[np.generic], components: int, parsed: np.dtype[np.generic]
+    ) -> npt.NDArray[np.generic]:
+        count = self._start()
+        if self.binary:
+            size = count * components * raw.itemsize
+            if not count:
+                return np.empty((0, components), raw)
+            if len(self.rest) < size + 2 or self.rest[:1] != b"(":
+                raise ValueError(f"{self.name} ends before its {count} entries do")
+            values = np.frombuffer(self.rest, raw, count * components, 1)
+            self.rest = self.rest[size + 2 :]
+        else:
+            text = (
+                self.rest.translate(None, b"()")
+                if components == 1
+                else self.rest.replace(b"(", b" ").replace(b")", b" ")
+            )
+            values = _numbers(text, parsed, self.name)
+        if len(values) != count * components:
+            raise ValueError(f"{self.name} says {count} entries but has {len(values) / components:g}")
+        return values.reshape(count, components)
+
+    def _start(self) -> int:
+        match = _COUNT.match(self.rest)
+        if match is None:
+            raise ValueError(f"{self.name} has no list")
+        self.rest = self.rest[match.end() :]
+        return int(match["count"])
+
+
+def _numbers(text: bytes, kind: np.dtype[np.generic], name: str) -> npt.NDArray[np.generic]:
+    try:
+        return np.array(text.split(), dtype=kind)
+    except ValueError as problem:
+        raise ValueError(f"{name}: {problem}") from None
+
+
+def _read_faces(file: _List) -> tuple[Ints, Ints]:
+    if file.binary:
+        if file.kind != "faceCompactList":
+            raise ValueError(f"faces are a {file.kind}, which no OpenFOAM tool writes in binary")
+        offsets = file.labels()
+        return file.labels(), offsets
+    match = _COUNT.match(file.rest)
+    if match is None:
+        raise ValueError("faces has no list")
+    count, body = int(match["count"]), file.rest[match.end() :]
+    # "3(1 2 3)" reads as 3 1 2 3 once the parentheses are gone
+    numbers = _numbers(body.replace(b"(", b" ").replace(b")", b" "), np.dtype(np.int64), "faces").astype(np.int64)
+    starts = np.empty(count, np.int64)
+    place = 0
+    for face in range(count):
+        if place >= len(numbers) or numbers[place] < 3:
+            raise ValueError(f"face {face} of {count} is missing or no polygon")
+        starts[face] = place
+        place += int(numbers[place]) + 1
+    if place != len(numbers):
+        raise ValueError(f"the {count} faces do not end where their list does")
+    keep = np.ones(len(numbers), bool)
+    keep[starts] = False
+    return numbers[keep], np.concatenate([[0], np.cumsum(numbers[starts])])
+
+
+def _read_boundary(content: bytes) -> tuple[Patch, ...]:
+    text = _COMMENT.sub(b" ", content).decode("latin-1")
+    body = text[text.index("(") :] if "(" in text else ""
+    patches = []
+    for match in re.finditer(r"([^\s(){};]+)\s*\{([^{}]*)\}", body):
+        count, start = (re.search(rf"{key}\s+(\d+)\s*;", match[2]) for key in ("nFaces", "startFace"))
+        if count is None or start is None:
+            raise ValueError(f"patch {match[1]} in boundary has no nFaces or startFace")
+        patches.append(Patch(match[1], int(start[1]), int(count[1])))
+    return tuple(patches)

@@ -1,0 +1,196 @@
+"""All metrics of a mesh, held against their limits."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from pipeline.data import FaceMesh, Floats, Metric, QualityReport
+from pipeline.geometry.polyhedra import Polyhedra
+from pipeline.progress import Progress, silent
+from pipeline.quality import metrics as definitions
+from pipeline.quality.settings import QualitySettings
+
+WORST = 5
+"""How many of the worst cells or faces a report names."""
+USELESS_ANGLE = 90.0
+"""Non-orthogonality [degree] from which a face passes flux backwards; `checkMesh` fails there."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Definition:
+    compute: Callable[[FaceMesh, Polyhedra], Floats]
+    where: str
+    worst_is: str
+    unit: str = "1"
+    fixed_limit: float | None = None
+    source: str = "OpenFOAM checkMesh"
+
+
+_DEFINITIONS = {
+    "non_orthogonality": _Definition(definitions.non_orthogonality, "internal faces", "largest", "degree"),
+    "skewness": _Definition(definitions.skewness, "faces", "largest"),
+    "aspect_ratio": _Definition(definitions.aspect_ratio, "cells", "largest"),
+    "determinant": _Definition(
+        definitions.determinant, "cells", "smallest", source="OpenFOAM checkMesh -allGeometry"
+    ),
+    "face_weight": _Definition(
+        definitions.face_weight, "internal faces", "smallest", source="OpenFOAM checkMesh -allGeometry"
+    ),
+    "volume_ratio": _Definition(
+        definitions.volume_ratio, "internal faces", "smallest", source="OpenFOAM checkMesh -allGeometry"
+    ),
+    "volume": _Definition(definitions.volume, "cells", "smallest", "m3", 0.0),
+    "face_area": _Definition(definitions.face_area, "faces", "smallest", "m2", 0.0),
+    "face_pyramid": _Definition(
+        definitions.face_pyramid, "faces", "smallest", "1", 0.0, "OpenFOAM's face pyramids, relative to the cell"
+    ),
+    "openness": _Definition(definitions.openness, "cells", "largest", "1", 1e-6),
+}  # fmt: skip
+
+
+def judge(mesh: FaceMesh, settings: QualitySettings | None = None, progress: Progress = silent) -> QualityReport:
+    """Measure a mesh by OpenFOAM's definitions and say whether it may go to a solver.
+
+    Parameters
+    ----------
+    mesh : FaceMesh
+    settings : QualitySettings
+        The limits; those of `checkMesh` by default.
+    progress : Progress
+
+    Returns
+    -------
+    QualityReport
+        A metric that the mesh has nothing to measure with (one cell has no internal face) is left out.
+    """
+    settings = settings or QualitySettings()
+    shape = mesh.polyhedra()
+    found: dict[str, Metric] = {}
+    reasons = _topology(mesh)
+    warnings: list[str] = []
+    for done, (name, definition) in enumerate(_DEFINITIONS.items()):
+        progress(f"quality: {name}", done / len(_DEFINITIONS))
+        values = definition.compute(mesh, shape)
+        if not len(values):
+            continue
+        metric = _summary(name, definition, values, getattr(settings, name, definition.fixed_limit), shape)
+        found[name] = metric
+        if metric.over_limit:
+            mild = name == "non_orthogonality" and metric.max < USELESS_ANGLE
+            (warnings if mild else reasons).append(_sentence(metric))
+    verdict = "fail" if reasons else "warn" if warnings else "pass"
+    return QualityReport(
+        cells=mesh.cells,
+        points=len(mesh.points),
+        faces=mesh.faces,
+        internal_faces=mesh.internal,
+        patches={patch.name: patch.count for patch in mesh.patches},
+        volume=float(shape.volumes.sum()),
+        metrics=found,
+        verdict=verdict,
+        reasons=(*reasons, *warnings),
+    )
+
+
+def measure(mesh: FaceMesh) -> dict[str, Floats]:
+    """Give every value of every metric, for histograms: one array per metric, as `judge` measures it."""
+    shape = mesh.polyhedra()
+    return {name: definition.compute(mesh, shape) for name, definition in _DEFINITIONS.items()}
+
+
+def cell_fields(mesh: FaceMesh) -> dict[str, Floats]:
+    """Give one value per cell of each metric that has a limit to choose, for coloring cells.
+
+    A metric of faces gives a cell the worst of its faces.
+
+    Returns
+    -------
+    dict of (cells,) arrays
+    """
+    shape = mesh.polyhedra()
+    fields = {"volume": shape.volumes}
+    for name in QualitySettings.model_fields:
+        definition = _DEFINITIONS[name]
+        values = definition.compute(mesh, shape)
+        fields[name] = values if definition.where == "cells" else _worst_of_faces(mesh, values, definition.worst_is)
+    return fields
+
+
+def _worst_of_faces(mesh: FaceMesh, values: Floats, worst_is: str) -> Floats:
+    best, worse = (-np.inf, np.maximum) if worst_is == "largest" else (np.inf, np.minimum)
+    worst = np.full(mesh.cells, best)
+    worse.at(worst, mesh.owner[: len(values)], values)
+    worse.at(worst, mesh.neighbour, values[: mesh.internal])
+    # a cell without a single internal face
+    return np.where(np.isfinite(worst), worst, 0.0 if worst_is == "largest" else 1.0)
+
+
+def _summary(name: str, definition: _Definition, values: Floats, limit: float | None, shape: Polyhedra) -> Metric:
+    largest = definition.worst_is == "largest"
+    if limit is None:
+        over = 0
+    elif largest:
+        over = int((values > limit).sum())
+    else:
+        over = int(((values < limit) | (values <= 0)).sum())
+    few = min(WORST, len(values))
+    ranks = np.argpartition(-values if largest else values, few - 1)[:few]
+    ranks = ranks[np.argsort(-values[ranks] if largest else values[ranks], kind="stable")]
+    places = shape.cell_centers if definition.where == "cells" else shape.centers
+    mean = float(values.mean())
+    if name == "non_orthogonality":
+        mean = float(np.degrees(np.arccos(np.cos(np.radians(values)).mean())))
+    return Metric(
+        name=name,
+        unit=definition.unit,
+        where=definition.where,
+        min=float(values.min()),
+        mean=mean,
+        p99=float(np.percentile(values, 99)),
+        max=float(values.max()),
+        limit=limit,
+        worst_is=definition.worst_is,
+        over_limit=over,
+        worst=tuple((int(k), float(values[k]), _place(places[k])) for k in ranks),
+        source=definition.source,
+    )
+
+
+def _place(point: Floats) -> tuple[float, float, float]:
+    x, y, z = point.tolist()
+    return x, y, z
+
+
+def _sentence(metric: Metric) -> str:
+    side, worst = ("above", metric.max) if metric.worst_is == "largest" else ("below", metric.min)
+    if metric.limit == 0:
+        side = "not above"
+    unit = "" if metric.unit == "1" else f" {metric.unit}"
+    x, y, z = metric.worst[0][2]
+    return (
+        f"{metric.name.replace('_', ' ')}: {metric.over_limit} {metric.where} {side} {metric.limit:g}{unit}, "
+        f"worst {worst:.4g} at ({x:.4g}, {y:.4g}, {z:.4g}) m"
+    )
+
+
+def _topology(mesh: FaceMesh) -> list[str]:
+    """Tell what no metric sees: parts that do not touch, points without faces, patches without any."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    links = coo_array(
+        (np.ones(mesh.internal, np.int8), (mesh.owner[: mesh.internal], mesh.neighbour)), shape=(mesh.cells,) * 2
+    )
+    parts, part = connected_components(links, directed=False)
+    troubles = []
+    if parts > 1:
+        smallest = int(np.bincount(part).min())
+        troubles.append(f"{parts} parts of the mesh share no face, the smallest has {smallest} cells")
+    unused = len(mesh.points) - len(np.unique(mesh.corners))
+    if unused:
+        troubles.append(f"{unused} points belong to no face")
+    empty = [patch.name for patch in mesh.patches if not patch.count]
+    if empty:
+        troubles.append(f"no face in patch {', '.join(empty)}")
+    return troubles

@@ -1,0 +1,42 @@
+"""A quality report as rows of text, for a terminal or a page."""
+
+from pipeline.data import Metric, QualityReport
+
+HEADER = ("metric", "of", "min", "mean", "99 %", "max", "limit", "beyond")
+
+
+def rows(report: QualityReport) -> list[tuple[str, ...]]:
+    """One row per metric, in the columns of `HEADER`.
+
+    Examples
+    --------
+    >>> metric = Metric("skewness", "1", "faces", 0.0, 0.2, 0.7, 5.0, 4.0, "largest", 1, (), "checkMesh")
+    >>> rows(QualityReport(9, 9, 9, 9, {}, 1.0, {"skewness": metric}, "fail"))
+    [('skewness', 'faces', '0', '0.2', '0.7', '5', '< 4', '1')]
+    """
+    return [_row(metric) for metric in report.metrics.values()]
+
+
+def _row(metric: Metric) -> tuple[str, ...]:
+    name = metric.name.replace("_", " ") + ("" if metric.unit == "1" else f" [{metric.unit}]")
+    sign = "<" if metric.worst_is == "largest" else ">"
+    limit = "" if metric.limit is None else f"{sign} {metric.limit:g}"
+    numbers = (f"{value:.4g}" for value in (metric.min, metric.mean, metric.p99, metric.max))
+    return (name, metric.where, *numbers, limit, str(metric.over_limit) if metric.limit is not None else "")
+
+
+def summary(report: QualityReport) -> str:
+    """One line: size and verdict.
+
+    Examples
+    --------
+    >>> summary(QualityReport(1000, 300, 2100, 1900, {"inlet": 200}, 1.0, {}, "pass"))
+    '1,000 cells, 300 points, 2,100 faces: every limit holds'
+    """
+    words = {
+        "pass": "every limit holds",
+        "warn": "usable, with a loss of accuracy at a few faces",
+        "fail": "not fit for a solver",
+    }
+    size = f"{report.cells:,} cells, {report.points:,} points, {report.faces:,} faces"
+    return f"{size}: {words[report.verdict]}"
