@@ -44,10 +44,26 @@ def enclosed_volume(points: Floats, triangles: Ints) -> float:
     >>> round(6 * enclosed_volume(corners, faces), 12)
     1.0
     """
+    return float(signed_volumes(points, triangles).sum())
+
+
+def signed_volumes(points: Floats, triangles: Ints) -> Floats:
+    """Each triangle's share of the enclosed volume: summed over any closed part, the volume inside that part.
+
+    Parameters
+    ----------
+    points : (n, 3) array [m]
+    triangles : (m, 3) int array
+
+    Returns
+    -------
+    (m,) array [m3]
+    """
     # measured from the middle of the surface: far from the origin the terms would cancel in rounding
     local = points - 0.5 * (points.min(axis=0) + points.max(axis=0))
     centers = local[triangles].mean(axis=1)
-    return float(np.einsum("ij,ij->", area_vectors(local, triangles), centers) / 3.0)
+    shares: Floats = np.einsum("ij,ij->i", area_vectors(local, triangles), centers) / 3.0
+    return shares
 
 
 def unmatched_edges(triangles: Ints) -> int:
@@ -71,3 +87,63 @@ def unmatched_edges(triangles: Ints) -> int:
     backward = np.unique(end * count + start)
     missing = np.setdiff1d(forward, backward, assume_unique=True).size
     return int(missing + (repeats - 1).sum())
+
+
+def winding_number(points: Floats, triangles: Ints, place: Floats) -> float:
+    r"""How often a closed surface winds around a place: 1 inside, 0 outside.
+
+    The solid angle of each triangle after van Oosterom and Strackee (1983, doi 10.1109/TBME.1983.325207, Eq. 8),
+    :math:`\tan(\Omega/2) = a \cdot (b \times c) / (abc + (a \cdot b) c + (b \cdot c) a + (c \cdot a) b)`.
+
+    Parameters
+    ----------
+    points : (n, 3) array [m]
+    triangles : (m, 3) int array
+    place : (3,) array [m]
+
+    Returns
+    -------
+    float
+        Negative inside a surface that is inside out.
+
+    Examples
+    --------
+    >>> corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
+    >>> faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    >>> round(winding_number(corners, faces, np.full(3, 0.2)), 12)
+    1.0
+    """
+    a, b, c = (points[triangles[:, k]] - place for k in range(3))
+    x, y, z = (np.linalg.norm(side, axis=1) for side in (a, b, c))
+    dot = (np.einsum("ij,ij->i", one, other) for one, other in ((a, b), (b, c), (c, a)))
+    over = x * y * z + sum(product * length for product, length in zip(dot, (z, x, y), strict=True))
+    half_angle = np.arctan2(np.einsum("ij,ij->i", a, np.cross(b, c)), over)
+    return float(half_angle.sum() / (2.0 * np.pi))
+
+
+def connected_pieces(triangles: Ints) -> Ints:
+    """Tell the parts of a surface that share no point from each other.
+
+    Parameters
+    ----------
+    triangles : (m, 3) int array
+
+    Returns
+    -------
+    (m,) int array
+        Number of the part that each triangle belongs to, from 0.
+
+    Examples
+    --------
+    >>> connected_pieces(np.array([[0, 1, 2], [3, 4, 5], [2, 1, 6]])).tolist()
+    [0, 1, 0]
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    names, corner = np.unique(triangles, return_inverse=True)
+    corner = corner.reshape(triangles.shape)
+    ends = corner[:, [0, 1, 1, 2]].reshape(-1, 2)
+    graph = coo_array((np.ones(len(ends), dtype=np.int8), (ends[:, 0], ends[:, 1])), shape=(len(names), len(names)))
+    pieces: Ints = connected_components(graph, directed=False)[1].astype(np.int64)[corner[:, 0]]
+    return pieces

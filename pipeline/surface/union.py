@@ -1,0 +1,177 @@
+"""The fibers of a mat become one closed surface, cut flush with the plan's sides."""
+
+import numpy as np
+
+from pipeline.data import Mat, Surface
+from pipeline.errors import StageError
+from pipeline.geometry.box import Box
+from pipeline.geometry.solids import Body, unite_within
+from pipeline.geometry.triangles import Floats, Ints
+from pipeline.progress import Progress, silent
+from pipeline.surface.settings import SurfaceSettings
+from pipeline.surface.tubes import Ends, polygon_radius, tubes
+
+_ON_FACE = 1e-6
+"""Distance from a side, in radii, within which a fiber's end counts as lying on it: coordinates are rounded."""
+
+
+def unite(mat: Mat, settings: SurfaceSettings, progress: Progress = silent) -> Surface:
+    """Unite the fibers into closed surfaces, cut flush with the plan's sides and open to nothing along z.
+
+    An end on a side of the plan runs on through that side before the cut; an end inside gets a cap. In a
+    periodic mat what leaves through one side enters through the opposite one.
+
+    Parameters
+    ----------
+    mat : Mat
+    settings : SurfaceSettings
+    progress : Progress
+
+    Returns
+    -------
+    Surface
+
+    Raises
+    ------
+    StageError
+        If no fiber lies within the plan, or the union fails.
+    """
+    bodies, fiber = fiber_bodies(mat, settings, progress)
+    progress(f"uniting {len(bodies)} tubes of {mat.fibers} fibers")
+    points, triangles, body = unite_within(bodies, clipping_box(mat, bodies))
+    if len(triangles) == 0:
+        raise StageError(f"none of the {mat.fibers} fibers lies within the plan {mat.slab}; check their coordinates")
+    source = np.where(body >= 0, fiber[np.maximum(body, 0)], -1)
+    return Surface(points, triangles, spread(triangles, source), mat.radius, mat.slab)
+
+
+def fiber_bodies(mat: Mat, settings: SurfaceSettings, progress: Progress = silent) -> tuple[list[Body], Ints]:
+    """Build the closed tubes of every fiber, and of its periodic images that meet the plan.
+
+    Parameters
+    ----------
+    mat : Mat
+    settings : SurfaceSettings
+    progress : Progress
+
+    Returns
+    -------
+    bodies : list of (points, triangles)
+        Running out through the plan's sides, not cut yet.
+    fiber : (bodies,) int array
+        Fiber that each body belongs to.
+    """
+    bodies: list[Body] = []
+    fiber: list[int] = []
+    for k in range(mat.fibers):
+        if k % 100 == 0:
+            progress("building tubes", k / mat.fibers)
+        nodes, radius = mat.nodes[mat.first[k] : mat.first[k + 1]], float(mat.radius[k])
+        if mat.periodic:
+            ends = Ends(settings.caps, settings.caps)
+        else:
+            nodes, ends = run_through(nodes, radius, mat.slab, settings)
+        for points, triangles in tubes(nodes, radius, ends, settings):
+            for shift in _images(points, mat):
+                bodies.append((points + shift, triangles))
+                fiber.append(k)
+    return bodies, np.array(fiber, dtype=np.int64)
+
+
+def run_through(nodes: Floats, radius: float, slab: Box, settings: SurfaceSettings) -> tuple[Floats, Ends]:
+    """Extend the ends that lie on the plan's sides until the cut meets the whole cross-section.
+
+    A chord that grazes a corner would have to run far before its cross-section has left through the side it
+    ends on; it runs on to whichever side it leaves first.
+
+    Parameters
+    ----------
+    nodes : (n, 3) array [m]
+    radius : float [m]
+    slab : Box [m]
+    settings : SurfaceSettings
+
+    Returns
+    -------
+    nodes : (n, 3) array [m]
+        With the first and last node moved outward where they lie on a side.
+    ends : Ends
+        How each end is closed.
+    """
+    nodes = nodes.copy()
+    how = []
+    reach = polygon_radius(radius, settings.sides)
+    for end, inner in ((0, 1), (-1, -2)):
+        outward = nodes[end] - nodes[inner]
+        outward /= np.linalg.norm(outward)
+        lengths = []
+        on_side = False
+        for axis in (0, 1):
+            for side, sign in ((slab.lower[axis], -1.0), (slab.upper[axis], 1.0)):
+                toward = sign * outward[axis]
+                gap = sign * (side - nodes[end, axis])
+                if toward <= 1e-9:
+                    continue
+                on_side |= gap <= _ON_FACE * radius
+                tilt = np.sqrt(max(0.0, 1.0 - toward**2))
+                lengths.append((gap + 1.05 * reach * tilt) / toward + 0.5 * radius)
+        if on_side:
+            nodes[end] += max(min(lengths), 0.0) * outward
+        how.append("flat" if on_side else settings.caps)
+    return nodes, Ends(*how)
+
+
+def clipping_box(mat: Mat, bodies: list[Body]) -> Box:
+    """Give the plan as a box that reaches beyond every body along z."""
+    low = min(float(points[:, 2].min()) for points, _ in bodies)
+    high = max(float(points[:, 2].max()) for points, _ in bodies)
+    margin = 0.1 * (high - low)
+    (x0, y0, _), (x1, y1, _) = mat.slab.lower, mat.slab.upper
+    return Box((x0, y0, low - margin), (x1, y1, high + margin))
+
+
+def _images(points: Floats, mat: Mat) -> list[Floats]:
+    """Shifts by whole periods that bring some of the points into the plan."""
+    if not mat.periodic:
+        return [np.zeros(3)]
+    ranges = []
+    for axis in (0, 1):
+        size = mat.slab.size[axis]
+        first = np.ceil((mat.slab.lower[axis] - points[:, axis].max()) / size)
+        last = np.floor((mat.slab.upper[axis] - points[:, axis].min()) / size)
+        ranges.append(size * np.arange(first, last + 1))
+    return [np.array([x, y, 0.0]) for x in ranges[0] for y in ranges[1]]
+
+
+def spread(triangles: Ints, label: Ints) -> Ints:
+    """Give each unlabeled triangle (-1) the label of a labeled one that it is connected to by edges.
+
+    Parameters
+    ----------
+    triangles : (m, 3) int array
+        A closed surface.
+    label : (m,) int array
+
+    Returns
+    -------
+    (m,) int array
+
+    Examples
+    --------
+    >>> spread(np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]), np.array([-1, 7, 7, -1])).tolist()
+    [7, 7, 7, 7]
+    """
+    label = label.copy()
+    start, end = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
+    # every edge stands twice in a closed surface: sorting brings its two triangles together
+    order = np.lexsort((np.maximum(start, end), np.minimum(start, end)))
+    one, other = order[0::2] // 3, order[1::2] // 3
+    while (label < 0).any():
+        known = label.copy()
+        for a, b in ((one, other), (other, one)):
+            take = (known[a] < 0) & (label[b] >= 0)
+            known[a[take]] = label[b[take]]
+        if (known == label).all():
+            raise ValueError("a piece of the surface has no label anywhere")
+        label = known
+    return label
