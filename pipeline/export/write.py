@@ -1,0 +1,53 @@
+"""Every format that a case asks for, each in a folder of its own."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from pipeline.data import FaceMesh, Floats, Flow
+from pipeline.export.openfoam import write_openfoam
+from pipeline.export.settings import ExportSettings
+from pipeline.export.vtk import write_vtk
+from pipeline.progress import Progress, silent
+
+
+def export(
+    mesh: FaceMesh,
+    folder: Path,
+    settings: ExportSettings,
+    flow: Flow,
+    sides: str,
+    progress: Progress = silent,
+    fields: Mapping[str, Floats] | None = None,
+) -> tuple[str, ...]:
+    """Write the mesh in every format of `settings` into ``folder/<format>``.
+
+    Parameters
+    ----------
+    mesh : FaceMesh
+    folder : Path
+        Made if it is not there.
+    settings : ExportSettings
+    flow : Flow
+    sides : "symmetry", "slip" or "cyclic"
+        What the duct's sides are to a solver.
+    progress : Progress
+    fields : mapping of name to (cells,) array, optional
+        Shown on the cells by VTK.
+
+    Returns
+    -------
+    tuple of str
+        The formats written.
+
+    Raises
+    ------
+    StageError
+        If a format cannot hold what it is asked to.
+    """
+    for name in settings.formats:
+        place = folder / name
+        if name == "openfoam":
+            write_openfoam(mesh, place, flow, sides, settings, progress)
+        elif name == "vtk":
+            write_vtk(mesh, place, fields or {}, progress)
+    return settings.formats
