@@ -1,0 +1,18 @@
+"""Loops compiled by numba, once per machine."""
+
+from collections.abc import Callable
+from typing import ParamSpec, TypeVar
+
+from numba import njit
+
+_Arguments = ParamSpec("_Arguments")
+_Result = TypeVar("_Result")
+
+
+def compiled(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Result]:
+    """Compile a function when it is first called, and keep the machine code on disk.
+
+    The same as numba's ``njit(cache=True)``, but the function keeps its types for mypy.
+    """
+    machine_code: Callable[_Arguments, _Result] = njit(cache=True)(function)
+    return machine_code

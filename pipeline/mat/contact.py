@@ -1,0 +1,220 @@
+"""Where a new fiber rests on the fibers below: the supports of its profile, by the paper or clear of all.
+
+Every fiber is straight in plan, so two fibers meet in plan at one known place, or run beside each other over one
+known stretch: no search is needed along them.
+"""
+
+import numpy as np
+
+from pipeline.geometry.compiled import compiled
+from pipeline.geometry.triangles import Floats, Ints
+
+_LIFT = 4e-9
+"""Share of the distance by which a clear contact is lifted, to stay clear once coordinates are rounded."""
+
+
+@compiled
+def crossings(
+    chord: Floats,
+    radius: float,
+    chords: Floats,
+    radii: Floats,
+    first: Ints,
+    nodes: Floats,
+    spacing: float,
+    period: float,
+) -> Floats:
+    """Find the supports of the paper: one where the chord crosses an earlier fiber in plan.
+
+    Parameters
+    ----------
+    chord : (5,) array [m, m, -, -, m]
+        Start x, y, unit direction x, y, and length of the new fiber in plan.
+    radius : float [m]
+        Its radius.
+    chords : (fibers, 5) array
+        The earlier fibers in plan, in the same way.
+    radii : (fibers,) array [m]
+    first : (fibers + 1,) int array
+        Fiber k has the nodes ``first[k]`` to ``first[k + 1]``.
+    nodes : (n, 2) array [m]
+        Place along its chord and height of each node.
+    spacing : float [m]
+        Gap between surfaces.
+    period : float [m]
+        Period of the plan in x and y; 0 for a plan that does not wrap.
+
+    Returns
+    -------
+    (supports, 2) array [m]
+        Place along the chord and least height of the new fiber's axis: z_old + r_old + r_new + spacing.
+    """
+    supports = np.empty((64, 2))
+    count = 0
+    for k in range(len(radii)):
+        cross = chord[2] * chords[k, 3] - chord[3] * chords[k, 2]
+        if cross == 0.0:
+            continue
+        for dx, dy in _shifts(chord, chords[k], 0.0, period):
+            gap_x, gap_y = chords[k, 0] + dx - chord[0], chords[k, 1] + dy - chord[1]
+            x = (gap_x * chords[k, 3] - gap_y * chords[k, 2]) / cross
+            t = (gap_x * chord[3] - gap_y * chord[2]) / cross
+            if 0.0 <= x <= chord[4] and 0.0 <= t <= chords[k, 4]:
+                supports = _with_room(supports, count)
+                supports[count, 0] = x
+                supports[count, 1] = _height(nodes, first[k], first[k + 1], t) + radii[k] + radius + spacing
+                count += 1
+    return supports[:count]
+
+
+@compiled
+def clearances(
+    chord: Floats,
+    radius: float,
+    chords: Floats,
+    radii: Floats,
+    first: Ints,
+    nodes: Floats,
+    spacing: float,
+    period: float,
+    slope: float,
+) -> Floats:
+    """Find supports that keep the new fiber's axis r_old + r_new + spacing away from every earlier axis.
+
+    A line that falls with the slope passes clear over a point of an earlier axis at (xi, z), rho beside the chord,
+    if it stays above the disc of radius sqrt(R^2 - rho^2) there. Over a straight piece, the height of that line at the
+    chord's start, c = slope xi + z + k sqrt(R^2 - rho^2) with k = sqrt(1 + slope^2), is concave, with its maximum at
+    rho = m R / sqrt(k^2 + m^2), m = (slope d xi + d z) / d rho, or at an end. The falling and the rising line over a
+    piece meet in the apex of its tent. Pieces are cut to at most 4 R along the chord: one tent over a long piece
+    that runs beside the chord would stand needlessly high.
+
+    The parameters are those of `crossings`, and the relaxation slope.
+
+    Returns
+    -------
+    (supports, 2) array [m]
+        Place along the chord, within it, and least height of the new fiber's axis there.
+    """
+    supports = np.empty((64, 2))
+    count = 0
+    length = chord[4]
+    steep = np.sqrt(1.0 + slope * slope)
+    for k in range(len(radii)):
+        reach = (radii[k] + radius + spacing) * (1.0 + _LIFT)
+        # along and across the chord, per length of the earlier fiber
+        along = chord[2] * chords[k, 2] + chord[3] * chords[k, 3]
+        across = chord[2] * chords[k, 3] - chord[3] * chords[k, 2]
+        for dx, dy in _shifts(chord, chords[k], reach, period):
+            gap_x, gap_y = chords[k, 0] + dx - chord[0], chords[k, 1] + dy - chord[1]
+            xi_start = chord[2] * gap_x + chord[3] * gap_y
+            rho_start = chord[2] * gap_y - chord[3] * gap_x
+            begin, end = _stretch(rho_start, across, -reach, reach, 0.0, chords[k, 4])
+            begin, end = _stretch(xi_start, along, -reach, length + reach, begin, end)
+            if begin > end:
+                continue
+            node = _segment(nodes, first[k], first[k + 1], begin)
+            while node < first[k + 1] - 1 and nodes[node, 0] <= end:
+                t0, t1 = max(begin, nodes[node, 0]), min(end, nodes[node + 1, 0])
+                rise = (nodes[node + 1, 1] - nodes[node, 1]) / (nodes[node + 1, 0] - nodes[node, 0])
+                cuts = max(1, int(np.ceil((t1 - t0) * abs(along) / (4.0 * reach))))
+                for cut in range(cuts):
+                    ta = t0 + (t1 - t0) * cut / cuts
+                    tb = t0 + (t1 - t0) * (cut + 1) / cuts
+                    za = nodes[node, 1] + rise * (ta - nodes[node, 0])
+                    piece = (xi_start + along * ta, rho_start + across * ta, za)
+                    step = (along * (tb - ta), across * (tb - ta), rise * (tb - ta))
+                    fall = _highest(piece, step, slope, steep, reach)
+                    climb = _highest(piece, step, -slope, steep, reach)
+                    supports = _with_room(supports, count)
+                    supports[count, 0], supports[count, 1] = _apex(fall, climb, slope, length)
+                    count += 1
+                node += 1
+    return supports[:count]
+
+
+@compiled
+def _highest(
+    piece: tuple[float, float, float], step: tuple[float, float, float], slope: float, steep: float, reach: float
+) -> float:
+    """Largest slope xi + z + steep sqrt(reach^2 - rho^2) over a piece from `piece` to `piece + step`."""
+    (xi, rho, z), (d_xi, d_rho, d_z) = piece, step
+    start = slope * xi + z
+    change = slope * d_xi + d_z
+    best: float = max(
+        start + steep * np.sqrt(max(reach * reach - rho * rho, 0.0)),
+        start + change + steep * np.sqrt(max(reach * reach - (rho + d_rho) ** 2, 0.0)),
+    )
+    if d_rho != 0.0:
+        m = change / d_rho
+        rho_top = m * reach / np.sqrt(steep * steep + m * m)
+        share = (rho_top - rho) / d_rho
+        if 0.0 < share < 1.0:
+            best = max(best, start + share * change + steep * np.sqrt(max(reach * reach - rho_top * rho_top, 0.0)))
+    return best
+
+
+@compiled
+def _apex(fall: float, climb: float, slope: float, length: float) -> tuple[float, float]:
+    """Place and height of the tent under the lines ``fall - slope x`` and ``climb + slope x``, on the chord."""
+    if slope == 0.0:
+        return 0.0, fall
+    x = 0.5 * (fall - climb) / slope
+    if x < 0.0:
+        return 0.0, fall
+    if x > length:
+        return length, climb + slope * length
+    return x, 0.5 * (fall + climb)
+
+
+@compiled
+def _stretch(start: float, rate: float, low: float, high: float, begin: float, end: float) -> tuple[float, float]:
+    """Part of ``begin`` to ``end`` where ``start + rate t`` lies between `low` and `high`; empty if begin > end."""
+    if rate == 0.0:
+        return (begin, end) if low <= start <= high else (1.0, 0.0)
+    t0, t1 = (low - start) / rate, (high - start) / rate
+    return max(begin, min(t0, t1)), min(end, max(t0, t1))
+
+
+@compiled
+def _segment(nodes: Floats, low: int, high: int, t: float) -> int:
+    """Node at which the segment starts that holds `t`, among the nodes `low` to `high` of a fiber."""
+    high -= 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if nodes[middle, 0] <= t:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+@compiled
+def _height(nodes: Floats, low: int, high: int, t: float) -> float:
+    node = _segment(nodes, low, high, t)
+    share = (t - nodes[node, 0]) / (nodes[node + 1, 0] - nodes[node, 0])
+    height: float = nodes[node, 1] + share * (nodes[node + 1, 1] - nodes[node, 1])
+    return height
+
+
+@compiled
+def _shifts(chord: Floats, other: Floats, reach: float, period: float) -> list[tuple[float, float]]:
+    """Shifts by whole periods that may bring the other fiber within reach of the chord."""
+    shifts = [(0.0, 0.0)]
+    if period > 0.0:
+        shifts.clear()
+        far = 0.5 * (chord[4] + other[4]) + reach
+        mid_x = other[0] + 0.5 * other[4] * other[2] - chord[0] - 0.5 * chord[4] * chord[2]
+        mid_y = other[1] + 0.5 * other[4] * other[3] - chord[1] - 0.5 * chord[4] * chord[3]
+        for i in range(int(np.ceil((-far - mid_x) / period)), int(np.floor((far - mid_x) / period)) + 1):
+            for j in range(int(np.ceil((-far - mid_y) / period)), int(np.floor((far - mid_y) / period)) + 1):
+                shifts.append((i * period, j * period))
+    return shifts
+
+
+@compiled
+def _with_room(supports: Floats, count: int) -> Floats:
+    if count < len(supports):
+        return supports
+    larger = np.empty((2 * len(supports), 2))
+    larger[: len(supports)] = supports
+    return larger

@@ -1,0 +1,67 @@
+"""Running sums over the fibers of a growing mat, and whether they have reached the stop."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from pipeline.mat.settings import Stop
+
+Predict = Callable[[float, float, float], float]
+"""Predicts the quantity of a stop from solidity [-], thickness [m] and mean fiber diameter [m]."""
+
+
+@dataclass(slots=True)
+class Tally:
+    """Sums that make every stop's quantity available after each fiber at the same small cost.
+
+    Parameters
+    ----------
+    face_area : float [m2]
+    slab : float [m]
+        Thickness of a slab that is given; 0 where the fibers make it.
+    """
+
+    face_area: float
+    slab: float = 0.0
+    count: int = 0
+    plan_area: float = 0.0
+    volume: float = 0.0
+    diameters: float = 0.0
+    top: float = 0.0
+
+    def add(self, radius: float, plan_length: float, length: float, top: float) -> None:
+        """Count one more fiber, whose axis reaches up to the height `top` [m]."""
+        self.count += 1
+        self.plan_area += 2.0 * radius * plan_length
+        self.volume += math.pi * radius**2 * length
+        self.diameters += 2.0 * radius
+        self.top = max(self.top, top + radius)
+
+    @property
+    def thickness(self) -> float:
+        """Height of the highest axis plus its radius, or the given slab's thickness [m]."""
+        return self.slab or self.top
+
+    @property
+    def coverage(self) -> float:
+        """Summed plan area over the face's area [-]."""
+        return self.plan_area / self.face_area
+
+    @property
+    def solidity(self) -> float:
+        """Summed cylinder volume over the slab's volume [-]."""
+        return self.volume / (self.face_area * self.thickness)
+
+    def value(self, stop: Stop, predict: Predict | None) -> float:
+        """Give the stop's quantity as it stands [SI].
+
+        Raises
+        ------
+        ValueError
+            If a model has to predict it and `predict` is None.
+        """
+        if stop.predicted:
+            if predict is None:
+                raise ValueError(f"a stop by {stop.quantity} needs a model that predicts it")
+            return predict(self.solidity, self.thickness, self.diameters / self.count)
+        return float(getattr(self, stop.quantity))
