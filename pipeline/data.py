@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pipeline.geometry.box import Box
-from pipeline.geometry.faces import compacted, patch_of_faces, tet_faces
+from pipeline.geometry.faces import compacted, patch_of_faces, tet_faces, tets_of_faces
 from pipeline.geometry.polyhedra import Polyhedra, polyhedra
 from pipeline.geometry.tets import volumes
 from pipeline.geometry.triangles import enclosed_volume, unmatched_edges
@@ -391,6 +391,15 @@ class FaceMesh:
         """Number of faces between two cells."""
         return len(self.neighbour)
 
+    def triangles(self) -> Ints:
+        """All faces as a (faces, 3) int array; ValueError if one has more than three corners."""
+        _check(len(self.corners) == 3 * self.faces, "a face is no triangle")
+        return self.corners.reshape(-1, 3)
+
+    def tets(self) -> Ints:
+        """Cells as a (cells, 4) int array of positive tetrahedra; ValueError if one is something else."""
+        return tets_of_faces(self.triangles(), self.owner, self.neighbour, self.cells)
+
     def polyhedra(self) -> Polyhedra:
         """Areas and centers of the faces, volumes and centers of the cells."""
         return polyhedra(self.points, self.corners, self.offsets, self.owner, self.neighbour, self.cells)
@@ -459,23 +468,63 @@ class QualityReport:
 
 @dataclass(frozen=True, slots=True)
 class ModelRow:
-    """One pressure-drop model with the three solidities [Pa]; `notes` names what is outside its range."""
+    """Pressure drop by one model, from three solidities [Pa].
+
+    Parameters
+    ----------
+    nominal, surface, mesh : float [Pa]
+        From the nominal, the surface's and the mesh's solidity; infinite where the model has no answer.
+    overlap, meshing : float [Pa]
+        What the fibers' overlap takes (surface less nominal) and what the mesh takes (mesh less surface).
+    title, structure : str
+        Whose model, of what kind of medium.
+    notes : tuple of str
+        What is outside the model's range.
+    """
 
     nominal: float
     surface: float
     mesh: float
+    overlap: float = 0.0
+    meshing: float = 0.0
+    title: str = ""
+    structure: str = ""
     notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Pressure drop by analytical models from three solidities, side by side."""
+    """Pressure drop by analytical models from three solidities, side by side.
+
+    Parameters
+    ----------
+    solidity : dict of str to float [-]
+        ``nominal``, ``surface``, ``mesh``.
+    thickness, fiber_diameter : float [m]
+        Of the slab; the diameter of equal fibers that have the same length and volume.
+    face_velocity : float [m/s]
+    models : dict of str to ModelRow
+    knudsen, reynolds : float [-]
+        Of the fiber.
+    regime : str
+        Flow regime of the fiber.
+    attribution : dict of str to float [-]
+        Relative changes of the reference model's pressure drop: by ``overlap``, by ``meshing``, and by taking the
+        lowest (``model_low``) or the highest (``model_high``) of all models instead.
+    fiber_diameters : dict of str to float [m]
+        Mean diameters of the mat, by what each of them keeps.
+    """
 
     solidity: dict[str, float]
     thickness: float
     fiber_diameter: float
     face_velocity: float
     models: dict[str, ModelRow] = field(default_factory=dict)
+    knudsen: float = 0.0
+    reynolds: float = 0.0
+    regime: str = ""
+    attribution: dict[str, float] = field(default_factory=dict)
+    fiber_diameters: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

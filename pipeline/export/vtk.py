@@ -7,7 +7,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from pipeline.data import FaceMesh, Floats, Patch
-from pipeline.geometry.faces import compacted, tets_of_faces
+from pipeline.geometry.faces import compacted
 from pipeline.progress import Progress, silent
 
 VOLUME = "internal.vtu"
@@ -34,10 +34,9 @@ def write_vtk(mesh: FaceMesh, folder: Path, fields: Mapping[str, Floats], progre
     import pyvista as pv
 
     progress("export: VTK")
+    triangles = mesh.triangles()
+    grid = pv.UnstructuredGrid({pv.CellType.TETRA: mesh.tets()}, np.array(mesh.points))
     (folder / "boundary").mkdir(parents=True, exist_ok=True)
-    triangles = mesh.corners.reshape(-1, 3)
-    tets = tets_of_faces(triangles, mesh.owner, mesh.neighbour, mesh.cells)
-    grid = pv.UnstructuredGrid({pv.CellType.TETRA: tets}, np.array(mesh.points))
     for name, values in fields.items():
         grid.cell_data[name] = values
     grid.save(folder / VOLUME)

@@ -1,0 +1,51 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pipeline.data import FaceMesh, Patch
+from pipeline.export.vtk import write_vtk
+from tests.sample_meshes import duct
+
+
+def test_pyvista_reads_the_same_cells_patches_and_volume(tmp_path: Path) -> None:
+    import pyvista as pv
+
+    mesh = duct((5, 5, 10), (10e-6, 10e-6, 20e-6), jitter=0.2).face_mesh()
+    shape = mesh.polyhedra()
+    write_vtk(mesh, tmp_path, {"volume": shape.volumes})
+    blocks = pv.read(tmp_path / "mesh.vtm")
+    volume, boundary = blocks["internal"], blocks["boundary"]
+    assert volume.n_cells == mesh.cells
+    assert (volume.celltypes == pv.CellType.TETRA).all()
+    # doubles, cell by cell in the solver's order and never inside out
+    assert volume.points.dtype == np.float64
+    assert volume.compute_cell_sizes()["Volume"] == pytest.approx(shape.volumes, rel=1e-12)
+    assert np.array_equal(volume["volume"], shape.volumes)
+    assert boundary.keys() == [patch.name for patch in mesh.patches]
+    for patch in mesh.patches:
+        areas = np.linalg.norm(shape.areas[patch.start : patch.start + patch.count], axis=1)
+        assert boundary[patch.name].n_cells == patch.count
+        assert boundary[patch.name].area == pytest.approx(areas.sum(), rel=1e-12)
+
+
+def test_patches_face_outward(tmp_path: Path) -> None:
+    import pyvista as pv
+
+    write_vtk(duct().face_mesh(), tmp_path, {})
+    inlet = pv.read(tmp_path / "boundary/inlet.vtp").compute_normals(point_normals=False, consistent_normals=False)
+    assert np.allclose(inlet["Normals"], [0, 0, -1])
+
+
+def test_cells_that_are_no_tetrahedra_are_refused(tmp_path: Path) -> None:
+    prism = FaceMesh(
+        np.array([[x, y, z] for z in (0.0, 2.0) for x, y in ((0, 0), (1, 0), (0, 1))]),
+        np.array([0, 2, 1, 3, 4, 5, 0, 1, 4, 3, 1, 2, 5, 4, 2, 0, 3, 5]),
+        np.array([0, 3, 6, 10, 14, 18]),
+        np.zeros(5, np.int64),
+        np.empty(0, np.int64),
+        1,
+        (Patch("all", 0, 5),),
+    )
+    with pytest.raises(ValueError, match="no triangle"):
+        write_vtk(prism, tmp_path, {})

@@ -1,0 +1,94 @@
+"""Agreement with OpenFOAM's own `checkMesh`, on tetrahedra, polyhedra and hexahedra with hanging nodes."""
+
+from pathlib import Path
+
+import pytest
+
+from pipeline.data import FaceMesh
+from pipeline.export.openfoam import read_openfoam, write_openfoam
+from pipeline.quality import judge
+from tests.openfoam import AIR, figures, foam, patches
+from tests.sample_meshes import duct
+
+pytestmark = pytest.mark.openfoam
+
+SNAPPY = """
+FoamFile { version 2.0; format ascii; class dictionary; object snappyHexMeshDict; }
+castellatedMesh true; snap true; addLayers false;
+geometry { ball { type searchableSphere; centre (0.5e-5 0.5e-5 1e-5); radius 0.26e-5; } }
+castellatedMeshControls
+{
+    maxLocalCells 100000; maxGlobalCells 100000; minRefinementCells 0; nCellsBetweenLevels 1;
+    features (); refinementSurfaces { ball { level (1 1); } } resolveFeatureAngle 30;
+    refinementRegions {} locationInMesh (1.1e-6 1.1e-6 1.1e-6); allowFreeStandingZoneFaces false;
+}
+snapControls { nSmoothPatch 3; tolerance 2; nSolveIter 30; nRelaxIter 5; }
+addLayersControls { relativeSizes true; layers {} expansionRatio 1; finalLayerThickness 0.3; minThickness 0.1; nGrow 0;
+    featureAngle 60; nRelaxIter 3; nSmoothSurfaceNormals 1; nSmoothNormals 3; nSmoothThickness 10;
+    maxFaceThicknessRatio 0.5; maxThicknessToMedialRatio 0.3; minMedianAxisAngle 90; nBufferCellsNoExtrude 0;
+    nLayerIter 50; }
+meshQualityControls { maxNonOrtho 65; maxBoundarySkewness 20; maxInternalSkewness 4; maxConcave 80; minVol 1e-30;
+    minTetQuality 1e-30; minArea -1; minTwist 0.02; minDeterminant 0.001; minFaceWeight 0.02; minVolRatio 0.01;
+    minTriangleTwist -1; nSmoothScale 4; errorReduction 0.75; }
+mergeTolerance 1e-6;
+"""
+BLOCK = """
+FoamFile { version 2.0; format ascii; class dictionary; object blockMeshDict; }
+scale 1e-5;
+vertices ((0 0 0) (1 0 0) (1 1 0) (0 1 0) (0 0 2) (1 0 2) (1 1 2) (0 1 2));
+blocks (hex (0 1 2 3 4 5 6 7) (8 8 16) simpleGrading (1 2 1));
+edges ();
+boundary ( inlet { type patch; faces ((0 3 2 1)); } outlet { type patch; faces ((4 5 6 7)); }
+    walls { type wall; faces ((0 1 5 4) (1 2 6 5) (2 3 7 6) (3 0 4 7)); } );
+"""
+
+
+def assert_as_checkmesh_says(case: Path, mesh: FaceMesh, *, cells_of_kind: str) -> None:
+    text = foam(case, "checkMesh", "-allGeometry", "-allTopology", "-latestTime")
+    said, report = figures(text), judge(mesh)
+    assert f"    {cells_of_kind}:     0\n" not in text
+    assert len(said) == 16
+    assert report.volume == pytest.approx(said.pop("total_volume"), rel=1e-6)
+    # both measure rounding
+    assert max(said.pop("max_openness"), report.metrics["openness"].max) < 1e-14
+    for name, value in said.items():
+        which, metric = name.split("_", 1)
+        ours = getattr(report.metrics[metric], which)
+        # 5 digits of what it prints; angles and ratios of nothing are rounding
+        floor = 0.0 if metric in ("volume", "face_area") else 1e-10
+        assert ours == pytest.approx(value, rel=1e-5, abs=floor), name
+    assert {patch.name: patch.count for patch in mesh.patches} == patches(text)
+    above = (
+        int(text.split("severely non-orthogonal (> 70 degrees) faces:")[1].split(".")[0]) if "severely" in text else 0
+    )
+    assert report.metrics["non_orthogonality"].over_limit == above
+
+
+@pytest.fixture
+def tets(tmp_path: Path) -> tuple[Path, FaceMesh]:
+    mesh = duct((5, 5, 10), (10e-6, 10e-6, 20e-6), jitter=0.24).face_mesh()
+    write_openfoam(mesh, tmp_path, AIR)
+    return tmp_path, mesh
+
+
+def test_tetrahedra_agree_to_five_digits(tets: tuple[Path, FaceMesh]) -> None:
+    assert_as_checkmesh_says(*tets, cells_of_kind="tetrahedra")
+
+
+def test_polyhedra_of_polydualmesh_agree_to_five_digits(tets: tuple[Path, FaceMesh]) -> None:
+    case, _ = tets
+    foam(case, "polyDualMesh", "-overwrite", "75")
+    # polyDualMesh moves corners off the sides by rounding, which symmetryPlane does not take
+    boundary = case / "constant/polyMesh/boundary"
+    boundary.write_text(boundary.read_text().replace("symmetryPlane", "symmetry"))
+    assert_as_checkmesh_says(case, read_openfoam(case), cells_of_kind="polyhedra")
+
+
+def test_hanging_nodes_of_snappyhexmesh_agree_to_five_digits(tets: tuple[Path, FaceMesh]) -> None:
+    case, _ = tets
+    (case / "system/blockMeshDict").write_text(BLOCK)
+    (case / "system/snappyHexMeshDict").write_text(SNAPPY)
+    foam(case, "blockMesh")
+    assert_as_checkmesh_says(case, read_openfoam(case), cells_of_kind="hexahedra")
+    foam(case, "snappyHexMesh", "-overwrite")
+    assert_as_checkmesh_says(case, read_openfoam(case), cells_of_kind="polyhedra")
