@@ -61,7 +61,8 @@ def aspect_ratio(mesh: FaceMesh, shape: Polyhedra) -> Floats:
     _, total = _sums_of_areas(mesh, shape)
     sides = total.max(axis=1) / (total.min(axis=1) + TINY)
     surface: Floats = total.sum(axis=1) / 6.0 / np.cbrt(np.maximum(shape.volumes, TINY)) ** 2
-    return np.maximum(sides, surface)
+    ratio: Floats = np.maximum(sides, surface)
+    return ratio
 
 
 def openness(mesh: FaceMesh, shape: Polyhedra) -> Floats:
@@ -79,7 +80,7 @@ def _sums_of_areas(mesh: FaceMesh, shape: Polyhedra) -> tuple[Floats, Floats]:
 
 
 def determinant(mesh: FaceMesh, shape: Polyhedra) -> Floats:
-    """Determinant of sum(S S) / (mean of |S|)^2 over a cell's internal faces, over 8, (cells,) array [1].
+    """Give det(sum(S S) / (mean of |S|)^2) / 8 over a cell's internal faces, (cells,) array [1].
 
     1 for a cube among cubes; 0 where all internal faces lie in two directions, so that no gradient is known.
     """

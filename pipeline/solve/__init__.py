@@ -1,1 +1,7 @@
 """OpenFOAM runs of an exported case."""
+
+from pipeline.solve.environment import openfoam_missing
+from pipeline.solve.running import Bed, solve
+from pipeline.solve.settings import SolveSettings
+
+__all__ = ["Bed", "SolveSettings", "openfoam_missing", "solve"]

@@ -105,6 +105,7 @@ def format_control_dict(flow: Flow, iterations: int = 2000) -> str:
             _patch_value("inletFlow", INLET, "sum", "phi"),
             _patch_value("outletFlow", OUTLET, "sum", "phi"),
             _drag(flow),
+            _STOP,
         ]
     )
     return _dictionary(
@@ -167,6 +168,17 @@ def _drag(flow: Flow) -> str:
         writeControl    timeStep;
         writeInterval   1;
     }}
+"""
+
+
+_STOP = """    stop
+    {
+        // "touch stop" in the case's folder ends a run after its next iteration, with its fields written
+        type            abort;
+        libs            ("libutilityFunctionObjects.so");
+        file            "$FOAM_CASE/stop";
+        action          writeNow;
+    }
 """
 
 
@@ -260,5 +272,5 @@ done
 ALLCLEAN = """#!/bin/sh
 # Removes what a run left behind: times, logs and the parts of a parallel run
 cd "${0%/*}" || exit 1
-rm -rf [1-9]* processor[0-9]* postProcessing log.*
+rm -rf [1-9]* processor[0-9]* postProcessing log.* stop
 """

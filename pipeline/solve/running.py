@@ -1,0 +1,264 @@
+"""One run of OpenFOAM: started or continued, watched, stopped when the pressure drop has settled, read back."""
+
+import contextlib
+import ctypes
+import hashlib
+import math
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from pipeline.data import Floats, Flow, Solution
+from pipeline.errors import StageError
+from pipeline.progress import Progress, silent
+from pipeline.solve import read_back
+from pipeline.solve.environment import environment, openfoam_missing
+from pipeline.solve.settings import SolveSettings
+from pipeline.solve.settled import change
+
+LOG = "log.simpleFoam"
+_POLL = 0.3  # seconds between two looks at a run
+_SAVES = 100  # iterations between two states that a killed run continues from
+_PR_SET_PDEATHSIG = 1
+_KEY, _SECONDS, _STOP = "fibertwin.key", "fibertwin.seconds", "stop"
+
+
+@dataclass(frozen=True, slots=True)
+class Bed:
+    """What the air goes through.
+
+    Parameters
+    ----------
+    face_area : float [m2]
+        Of the duct, across the flow.
+    thickness : float [m]
+        Of the mat.
+    pressure_factor : float [-], optional
+        f(solidity) of a model with ``pressure drop = f x viscosity x velocity x thickness / diameter^2``; gives
+        the effective fiber diameter.
+    fiber_length : float [m], optional
+        Of all fibers of an array of parallel ones; gives F*.
+    """
+
+    face_area: float
+    thickness: float
+    pressure_factor: float | None = None
+    fiber_length: float | None = None
+
+
+def solve(
+    case: Path,
+    work: Path,
+    flow: Flow,
+    bed: Bed,
+    settings: SolveSettings | None = None,
+    progress: Progress = silent,
+) -> Solution:
+    """Run a case that `pipeline.export` wrote until its pressure drop has settled.
+
+    Parameters
+    ----------
+    case : Path
+        The written OpenFOAM case; left as it is.
+    work : Path
+        Where the run is kept. If a run of the same case was killed there, it is continued.
+    flow : Flow
+        As the case was written with.
+    bed : Bed
+    settings : SolveSettings
+    progress : Progress
+        Told the iteration, the pressure drop and the residuals.
+
+    Returns
+    -------
+    Solution
+        `converged` is False where the iterations or the time ran out before the pressure drop had settled.
+
+    Raises
+    ------
+    StageError
+        If OpenFOAM is missing, cannot start, or the run diverges; with the end of its log.
+    """
+    settings = settings or SolveSettings()
+    missing = openfoam_missing(settings.cores)
+    if missing:
+        raise StageError(missing)
+    began = time.monotonic()
+    progress("solve: preparing the case")
+    _prepare(case, work, settings)
+    before = float((work / _SECONDS).read_text()) if (work / _SECONDS).exists() else 0.0
+    command = ["simpleFoam"]
+    if settings.cores > 1:
+        command = ["mpirun", "-np", str(settings.cores), "simpleFoam", "-parallel"]
+    try:
+        with _running(command, work) as solver:
+            settled = _watch(solver, work, flow, settings, progress)
+    finally:
+        seconds = before + time.monotonic() - began
+        (work / _SECONDS).write_text(f"{seconds:.3f}")
+    return _solution(work, flow, bed, settled, seconds, settings.cores)
+
+
+def _prepare(case: Path, work: Path, settings: SolveSettings) -> None:
+    """Make `work` a copy of the case, split for the cores, unless a run of just this case was killed there."""
+    key = _digest(case, settings.cores)
+    key_file = work / _KEY
+    if not key_file.exists() or key_file.read_text() != key:
+        shutil.rmtree(work, ignore_errors=True)
+        shutil.copytree(case, work)
+        if settings.cores > 1:
+            _edit(work / "system/decomposeParDict", numberOfSubdomains=settings.cores, n=f"(1 1 {settings.cores})")
+            _call(["decomposePar", "-force"], work, "log.decomposePar")
+        # last, so that a copy that was killed halfway is not taken for a run
+        key_file.write_text(key)
+    (work / _STOP).unlink(missing_ok=True)
+    _edit(
+        work / "system/controlDict",
+        endTime=settings.max_iterations,
+        writeInterval=min(_SAVES, settings.max_iterations),
+    )
+
+
+def _digest(case: Path, cores: int) -> str:
+    digest = hashlib.sha256(str(cores).encode())
+    for path in sorted(path for path in case.rglob("*") if path.is_file()):
+        digest.update(path.relative_to(case).as_posix().encode())
+        with path.open("rb") as file:
+            digest.update(hashlib.file_digest(file, "sha256").digest())
+    return digest.hexdigest()
+
+
+def _edit(path: Path, **entries: object) -> None:
+    """Set entries of a dictionary that stand on lines of their own."""
+    text = path.read_text(encoding="ascii")
+    for key, value in entries.items():
+        text, count = re.subn(rf"^(\s*{key}\s+)[^;]*;", rf"\g<1>{value};", text, count=1, flags=re.MULTILINE)
+        if not count:
+            raise StageError(f"{path} has no entry {key}; export the case again with --force export")
+    path.write_text(text, encoding="ascii")
+
+
+def _call(command: list[str], work: Path, log: str) -> None:
+    with (work / log).open("wb") as file:
+        done = subprocess.run(
+            command, cwd=work, env=environment(work), stdout=file, stderr=subprocess.STDOUT, check=False
+        )
+    if done.returncode:
+        raise StageError(f"{command[0]} failed (exit code {done.returncode}):\n{read_back.tail(work / log)}")
+
+
+def _end_with_parent() -> None:
+    """Let Linux end the solver when this process is killed, or it would go on writing into the next run's folder."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
+
+
+@contextlib.contextmanager
+def _running(command: list[str], work: Path) -> Iterator["subprocess.Popen[bytes]"]:
+    """Run the solver in a process group of its own, which ends with the block whatever happens."""
+    with (work / LOG).open("ab") as log:
+        solver = subprocess.Popen(
+            command,
+            cwd=work,
+            env=environment(work),
+            stdout=log,
+            stderr=subprocess.STDOUT,
+            stdin=subprocess.DEVNULL,
+            start_new_session=True,
+            preexec_fn=_end_with_parent,
+        )
+    try:
+        yield solver
+    finally:
+        if solver.poll() is None:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(solver.pid, signal.SIGTERM)
+            try:
+                solver.wait(10)
+            except subprocess.TimeoutExpired:
+                os.killpg(solver.pid, signal.SIGKILL)
+                solver.wait()
+
+
+def _watch(
+    solver: "subprocess.Popen[bytes]", work: Path, flow: Flow, settings: SolveSettings, progress: Progress
+) -> bool:
+    """Look at the run until it ends; ask it to stop once the pressure drop has settled or the time is over."""
+    deadline = time.monotonic() + settings.time_limit
+    settled = False
+    while True:
+        code = solver.poll()
+        drops = _pressure_drops(work, flow)
+        if len(drops):
+            last = change(drops[:, 1], settings.window)
+            settled = settled or last < settings.tolerance
+            _tell(progress, work, drops, last, settings)
+            if not math.isfinite(drops[-1, 1]):
+                break
+        if code is not None:
+            break
+        if settled or time.monotonic() > deadline:
+            (work / _STOP).touch()
+        time.sleep(_POLL)
+    if solver.poll() != 0 or not len(drops) or not np.isfinite(drops[:, 1]).all():
+        at = f"after {drops[-1, 0]:.0f} iterations" if len(drops) else "before its first iteration"
+        raise StageError(
+            f"simpleFoam failed {at} (exit code {solver.poll()}); check the mesh's quality, refine tetmesh.edge, or "
+            f"look into {work / LOG}, which ends:\n{read_back.tail(work / LOG)}"
+        )
+    # the solver may also find that nothing changes any more before the window is full
+    return settled or "SIMPLE solution converged" in read_back.tail(work / LOG, 40)
+
+
+def _pressure_drops(work: Path, flow: Flow) -> Floats:
+    inlet, outlet = (read_back.history(work, name) for name in (read_back.PRESSURE_IN, read_back.PRESSURE_OUT))
+    both = min(len(inlet), len(outlet))
+    # OpenFOAM's incompressible pressure is over the density
+    return np.column_stack([inlet[:both, 0], flow.density * (inlet[:both, 1] - outlet[:both, 1])])
+
+
+def _tell(progress: Progress, work: Path, drops: Floats, last: float, settings: SolveSettings) -> None:
+    found = read_back.residuals(read_back.tail(work / LOG, 60))
+    told = ", ".join(f"{name} {value:.1e}" for name, value in sorted(found.items()))
+    # the change falls from 1 to the tolerance, in even steps on a logarithmic scale
+    done = math.log(max(min(last, 1.0), settings.tolerance)) / math.log(settings.tolerance)
+    progress(
+        f"solve: iteration {drops[-1, 0]:.0f}, pressure drop {drops[-1, 1]:.4g} Pa, "
+        f"changed by {100 * last:.2g} % in {settings.window} iterations; residuals {told}",
+        min(max(done, drops[-1, 0] / settings.max_iterations), 1.0),
+    )
+
+
+def _solution(work: Path, flow: Flow, bed: Bed, settled: bool, seconds: float, cores: int) -> Solution:
+    drops = _pressure_drops(work, flow)
+    drop = float(drops[-1, 1])
+    # the third number of the force's first vector: along z
+    drag = float(read_back.history(work, read_back.DRAG, 3)[-1, 1])
+    flow_in = -float(read_back.history(work, read_back.FLOW_IN)[-1, 1])
+    flow_out = float(read_back.history(work, read_back.FLOW_OUT)[-1, 1])
+    law = flow.viscosity * flow.face_velocity * bed.thickness / drop
+    diameter = math.sqrt(bed.pressure_factor * law) if bed.pressure_factor is not None else None
+    f_star = drag / (bed.fiber_length * flow.viscosity * flow.face_velocity) if bed.fiber_length is not None else None
+    return Solution(
+        pressure_drop=drop,
+        flow_rate=flow_in,
+        drag=drag,
+        permeability=law,
+        force_balance_error=drag / (drop * bed.face_area) - 1.0,
+        mass_balance_error=flow_out / flow_in - 1.0,
+        iterations=int(drops[-1, 0]),
+        converged=settled,
+        seconds=seconds,
+        cores=cores,
+        effective_fiber_diameter=diameter,
+        f_star=f_star,
+    )

@@ -1,0 +1,143 @@
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from pipeline.data import Flow
+from pipeline.errors import StageError
+from pipeline.export.openfoam import write_openfoam
+from pipeline.solve import Bed, SolveSettings, openfoam_missing, solve
+from tests.openfoam import AIR
+from tests.sample_meshes import duct
+
+SIZE = (10e-6, 10e-6, 20e-6)
+# a bar of 4 um in a slab of 10 um
+BED = Bed(face_area=1e-10, thickness=10e-6, pressure_factor=1.0, fiber_length=10e-6)
+
+
+def bar_case(folder: Path, flow: Flow = AIR, cells: int = 10) -> Path:
+    mesh = duct((cells, cells, 2 * cells), SIZE, jitter=0.2).face_mesh()
+    write_openfoam(mesh, folder, flow)
+    return folder
+
+
+@pytest.mark.openfoam
+def test_drag_balances_the_pressure_drop_and_mass_is_kept(tmp_path: Path) -> None:
+    told: list[tuple[str, float | None]] = []
+
+    def listen(what: str, done: float | None = None) -> None:
+        told.append((what, done))
+
+    found = solve(bar_case(tmp_path / "case"), tmp_path / "work", AIR, BED, progress=listen)
+    assert found.converged
+    assert found.flow_rate == pytest.approx(0.025 * 1e-10, rel=1e-9)
+    assert abs(found.force_balance_error) < 0.01
+    assert abs(found.mass_balance_error) < 1e-5
+    assert found.permeability == pytest.approx(1.8e-5 * 0.025 * 10e-6 / found.pressure_drop, rel=1e-12)
+    # with f = 1 the diameter is the root of Darcy's permeability
+    assert found.effective_fiber_diameter == pytest.approx(found.permeability**0.5, rel=1e-12)
+    assert found.f_star == pytest.approx(found.drag / (10e-6 * 1.8e-5 * 0.025), rel=1e-12)
+    iterations = [what for what, _ in told if "pressure drop" in what and "residuals" in what]
+    assert iterations
+    assert all(0 <= done <= 1 for _, done in told if done is not None)
+
+
+@pytest.mark.openfoam
+def test_creeping_flow_scales_with_velocity_and_viscosity(tmp_path: Path) -> None:
+    # Stokes: the pressure drop is proportional to both
+    fast = replace(AIR, face_velocity=0.05, viscosity=3.6e-5)
+    drops = [
+        solve(
+            bar_case(tmp_path / name, flow, 6), tmp_path / f"{name}.work", flow, BED, SolveSettings(tolerance=1e-6)
+        ).pressure_drop
+        for name, flow in (("slow", AIR), ("fast", fast))
+    ]
+    assert drops[1] / drops[0] == pytest.approx(4.0, rel=2e-3)
+
+
+@pytest.mark.openfoam
+def test_two_cores_give_the_same_pressure_drop(tmp_path: Path) -> None:
+    case = bar_case(tmp_path / "case", cells=6)
+    one, two = (
+        solve(case, tmp_path / f"work{cores}", AIR, BED, SolveSettings(cores=cores, tolerance=1e-6)) for cores in (1, 2)
+    )
+    # the multigrid of each part differs, and the solver itself stops at residuals of 1e-5
+    assert two.pressure_drop == pytest.approx(one.pressure_drop, rel=1e-3)
+    assert two.cores == 2
+
+
+@pytest.mark.openfoam
+def test_a_run_that_ends_early_says_so_and_is_continued(tmp_path: Path) -> None:
+    case = bar_case(tmp_path / "case", cells=6)
+    early = solve(case, tmp_path / "work", AIR, BED, SolveSettings(max_iterations=25, window=20, tolerance=1e-6))
+    assert not early.converged
+    assert early.iterations == 25
+    whole = solve(case, tmp_path / "work", AIR, BED, SolveSettings(tolerance=1e-6))
+    assert whole.converged
+    assert (tmp_path / "work/postProcessing/inletPressure/25").is_dir()
+    fresh = solve(case, tmp_path / "fresh", AIR, BED, SolveSettings(tolerance=1e-6))
+    assert whole.pressure_drop == pytest.approx(fresh.pressure_drop, rel=1e-4)
+
+
+@pytest.mark.openfoam
+def test_a_run_killed_at_once_leaves_no_solver_behind_and_goes_on(tmp_path: Path) -> None:
+    import psutil
+
+    bar_case(tmp_path / "case", cells=14)
+    program = (
+        "from pathlib import Path; from pipeline.solve import *; from tests.openfoam import AIR\n"
+        "from tests.solve.test_running import BED\n"
+        f"solve(Path({str(tmp_path / 'case')!r}), Path({str(tmp_path / 'work')!r}), AIR, BED,"
+        " SolveSettings(tolerance=1e-9))"
+    )
+    victim = subprocess.Popen([sys.executable, "-c", program], stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 60
+    log = tmp_path / "work/log.simpleFoam"
+    while not (log.exists() and "Time = 20\n" in log.read_text()):
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    solvers = [child for child in psutil.Process(victim.pid).children() if child.name() == "simpleFoam"]
+    assert len(solvers) == 1
+    victim.kill()
+    victim.wait()
+    psutil.wait_procs(solvers, timeout=10)
+    assert not solvers[0].is_running()
+    assert "SIMPLE solution converged" not in log.read_text()
+    assert solve(tmp_path / "case", tmp_path / "work", AIR, BED).converged
+
+
+@pytest.mark.openfoam
+def test_another_case_in_the_same_place_starts_over(tmp_path: Path) -> None:
+    settings = SolveSettings(max_iterations=5)
+    solve(bar_case(tmp_path / "case", cells=4), tmp_path / "work", AIR, BED, settings)
+    fast = replace(AIR, face_velocity=0.05)
+    found = solve(bar_case(tmp_path / "case", fast, cells=4), tmp_path / "work", fast, BED, settings)
+    assert found.iterations == 5
+    assert found.flow_rate == pytest.approx(0.05e-10, rel=1e-9)
+
+
+@pytest.mark.openfoam
+def test_a_diverged_run_is_an_error_with_the_end_of_its_log(tmp_path: Path) -> None:
+    # no relaxation at a Reynolds number of 1e9
+    wild = replace(AIR, face_velocity=1e6, viscosity=1e-9)
+    with pytest.raises(StageError, match=r"(?s)simpleFoam failed .* which ends:\n.*\w"):
+        solve(bar_case(tmp_path / "case", wild, cells=4), tmp_path / "work", wild, BED)
+
+
+@pytest.mark.openfoam
+def test_a_broken_case_is_an_error_that_names_the_cause(tmp_path: Path) -> None:
+    case = bar_case(tmp_path / "case", cells=4)
+    (case / "0/p").unlink()
+    with pytest.raises(StageError, match=r"(?s)before its first iteration.*cannot find file"):
+        solve(case, tmp_path / "work", AIR, BED)
+
+
+def test_without_openfoam_the_reason_and_the_cure_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert "simpleFoam not found on the PATH; on Debian" in str(openfoam_missing())
+    with pytest.raises(StageError, match="decomposePar and mpirun"):
+        solve(tmp_path, tmp_path / "work", AIR, BED, SolveSettings(cores=2))
+    assert not (tmp_path / "work").exists()
