@@ -1,1 +1,17 @@
-"""Analytical models of pressure drop and single fiber efficiency."""
+"""Analytical models of fiber filters: pressure drop, single-fiber efficiency, and what follows from them."""
+
+from pipeline.analytics.comparison import compare
+from pipeline.analytics.growth import predictor
+from pipeline.analytics.prediction import Prediction, filter_of_comparison, filter_of_mat, predict
+from pipeline.analytics.tables import comparison_tables, prediction_tables
+
+__all__ = [
+    "Prediction",
+    "compare",
+    "comparison_tables",
+    "filter_of_comparison",
+    "filter_of_mat",
+    "predict",
+    "prediction_tables",
+    "predictor",
+]

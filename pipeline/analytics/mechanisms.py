@@ -11,6 +11,33 @@ from pipeline.analytics.numbers import Numbers
 from pipeline.data import Floats
 
 
+def usual_mechanisms(particle_diameter: float) -> tuple[str, ...]:
+    """Name the mechanisms that usually catch particles of this size, Table A2.
+
+    Parameters
+    ----------
+    particle_diameter : float [m]
+
+    Returns
+    -------
+    tuple of str
+        Empty from 200 to 300 nm, where the table names none: near the most penetrating size.
+
+    Notes
+    -----
+    Erratum: the table prints its sizes as micrometers; they are nanometers.
+
+    Examples
+    --------
+    >>> usual_mechanisms(50e-9), usual_mechanisms(600e-9)
+    (('diffusion',), ('impaction', 'gravity'))
+    """
+    size = particle_diameter / 1e-9
+    ranges = {"diffusion": (0.0, 100.0), "interception": (100.0, 200.0), "impaction": (300.0, np.inf)}
+    ranges["gravity"] = (500.0, np.inf)
+    return tuple(name for name, (low, high) in ranges.items() if low < size < high)
+
+
 def interception_exact(solidity: Numbers, ratio: Numbers) -> Floats:
     r"""Single-fiber efficiency of interception in Kuwabara's cell without approximation, Eqs. A6 and A8 [1]_.
 
@@ -63,7 +90,7 @@ def interception(solidity: Numbers, ratio: Numbers) -> Floats:
     Returns
     -------
     array [-]
-        Within 5 % of `interception_exact` for R up to 0.4 and solidity up to 0.1.
+        Up to 5 % below `interception_exact` for R up to 0.15, up to 11 % for R up to 0.4 (solidity up to 0.3).
 
     References
     ----------

@@ -6,7 +6,7 @@ from pipeline.analytics import air
 from pipeline.analytics.pressure_models import PressureModelName
 from pipeline.analytics.single_fiber import PresetName
 from pipeline.data import Flow
-from pipeline.units import Density, Length, Pressure, Temperature, Velocity, Viscosity
+from pipeline.units import Density, Fraction, Length, PositiveRatio, Pressure, Temperature, Velocity, Viscosity
 
 
 class FlowSettings(BaseModel):
@@ -15,7 +15,7 @@ class FlowSettings(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     face_velocity: Velocity = Field(
-        0.025, description="flow rate over the face's area; HEPA media are tested at 2.5 cm/s"
+        default=0.025, description="flow rate over the face's area; HEPA media are tested at 2.5 cm/s"
     )
     temperature: Temperature = Field(default=293.0, description="absolute temperature of the air")
     pressure: Pressure = Field(default=air.REFERENCE_PRESSURE, description="absolute pressure of the air")
@@ -35,8 +35,14 @@ class FlowSettings(BaseModel):
         default="paper",
         description="single-fiber model: what the paper computed, what its Table A6 computes, or Hinds' textbook form",
     )
+    particle_spread: PositiveRatio = Field(
+        default=1.0,
+        ge=1.0,
+        description="geometric standard deviation of the particle sizes, whose median by count is particle_diameter",
+    )
     pressure_model: PressureModelName = Field(
-        default="davies", description="pressure-drop model that a mat with mat.stop.pressure_drop is grown by"
+        default="davies",
+        description="pressure-drop model of the figure of merit and the HEPA check, and of a mat whose stop names none",
     )
 
     def flow(self) -> Flow:
@@ -55,3 +61,13 @@ class FlowSettings(BaseModel):
             density=self.density or air.density(self.temperature, self.pressure),
             mean_free_path=self.mean_free_path or air.mean_free_path(self.temperature, self.pressure),
         )
+
+
+class FilterSettings(BaseModel):
+    """A filter as the analytical models see it."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    solidity: Fraction = Field(description="fiber volume over filter volume")
+    thickness: Length = Field(description="extent along the flow")
+    fiber_diameter: Length = Field(description="diameter of the fibers, taken as equal")

@@ -217,8 +217,8 @@ def combined(model: SingleFiberModel, efficiencies: dict[str, Floats]) -> Floats
     return caught
 
 
-def penetration(single_fiber: Numbers, solidity: Numbers, thickness: Numbers, fiber_diameter: Numbers) -> Floats:
-    r"""Share of the particles that pass the filter, Eq. A28: :math:`P_F = \exp(-4\alpha E_\Sigma t / (\pi d_f))`.
+def capture_depth(single_fiber: Numbers, solidity: Numbers, thickness: Numbers, fiber_diameter: Numbers) -> Floats:
+    r"""How much a filter catches, on the scale on which layers add up: :math:`4\alpha E_\Sigma t / (\pi d_f)`.
 
     Parameters
     ----------
@@ -230,18 +230,42 @@ def penetration(single_fiber: Numbers, solidity: Numbers, thickness: Numbers, fi
     Returns
     -------
     array [-]
-        0 to 1 as long as `single_fiber` is not negative; the filter's efficiency is 1 minus it (Eq. A29, Eq. 1).
+        Its exponential, :math:`P_F = e^{-depth}`, is the share that passes (Eq. A28), see `penetration`.
 
     Notes
     -----
-    Brown's form has a further :math:`1/(1-\alpha)` in the exponent, for the velocity between the fibers; the paper
-    leaves it out.
+    Brown's form has a further :math:`1/(1-\alpha)`, for the velocity between the fibers; the paper leaves it out.
 
     Examples
     --------
-    >>> round(float(penetration(0.0546, 0.05, 1e-3, 2e-6)), 3)
+    >>> round(float(capture_depth(0.0546, 0.05, 1e-3, 2e-6)), 3)
+    1.738
+    """
+    value: Floats = 4.0 / np.pi * np.asarray(solidity) * single_fiber * thickness / fiber_diameter
+    return value
+
+
+def penetration(depth: Numbers) -> Floats:
+    r"""Share of the particles that pass the filter, Eq. A28: :math:`P_F = e^{-depth}`, of `capture_depth`.
+
+    0 to 1 as long as no single-fiber efficiency is negative.
+
+    Examples
+    --------
+    >>> round(float(penetration(1.738)), 3)
     0.176
     """
-    exponent = -4.0 / np.pi * solidity * single_fiber * thickness / fiber_diameter
-    value: Floats = np.exp(exponent)
+    value: Floats = np.exp(-np.asarray(depth))
+    return value
+
+
+def filter_efficiency(depth: Numbers) -> Floats:
+    r"""Share of the particles that the filter holds back, Eqs. 1 and A29: :math:`E_F = 1 - P_F`, of `capture_depth`.
+
+    Examples
+    --------
+    >>> round(float(filter_efficiency(1.738)), 3)
+    0.824
+    """
+    value: Floats = -np.expm1(-np.asarray(depth))
     return value

@@ -1,0 +1,92 @@
+"""Pressure drop by every model from the nominal, the surface's and the mesh's solidity, and where they differ."""
+
+import math
+
+from pipeline.analytics import slip
+from pipeline.analytics.cell import reynolds
+from pipeline.analytics.diameters import mat_diameters
+from pipeline.analytics.pressure_drop import pressure_drop
+from pipeline.analytics.pressure_models import MODELS, PressureModel
+from pipeline.data import Comparison, Flow, Mat, ModelRow
+
+
+def nominal_solidity(mat: Mat) -> float:
+    """Volume of all the fibers' cylinders over the slab's volume, overlaps counted twice [-]."""
+    section = math.pi * mat.radius[mat.segment_fibers()] ** 2
+    return float((section * mat.segment_lengths()).sum()) / mat.slab.volume
+
+
+def compare(
+    mat: Mat, surface_solidity: float, mesh_solidity: float, flow: Flow, reference: str = "davies"
+) -> Comparison:
+    """Predict the pressure drop of one mat from three solidities with every model.
+
+    Parameters
+    ----------
+    mat : Mat
+    surface_solidity : float [-]
+        Of the united surface, over the slab.
+    mesh_solidity : float [-]
+        1 minus the mesh's air over the slab.
+    flow : Flow
+    reference : str
+        The model that the attribution is about, one of `MODELS`.
+
+    Returns
+    -------
+    Comparison
+        In each row, nominal + overlap + meshing = mesh. ``attribution`` tells the same of the reference model in
+        relative terms, beside the spread of all models that are within their solidity range.
+    """
+    solidity = {"nominal": nominal_solidity(mat), "surface": surface_solidity, "mesh": mesh_solidity}
+    diameters = mat_diameters(mat, flow, mesh_solidity)
+    diameter = diameters["volume"]
+    kn = float(slip.knudsen(flow.mean_free_path, diameter))
+    re = float(reynolds(flow.density, diameter, flow.face_velocity, flow.viscosity))
+
+    def row(model: PressureModel) -> ModelRow:
+        drop = {
+            name: float(
+                pressure_drop(
+                    model.coefficient(share, slip.slip_length(kn)),
+                    flow.viscosity,
+                    flow.face_velocity,
+                    mat.thickness,
+                    diameter,
+                )
+            )
+            for name, share in solidity.items()
+        }
+        return ModelRow(
+            **drop,
+            overlap=drop["surface"] - drop["nominal"],
+            meshing=drop["mesh"] - drop["surface"],
+            title=model.title,
+            structure=model.structure,
+            notes=model.notes(mesh_solidity, kn, re),
+        )
+
+    rows = {name: row(model) for name, model in MODELS.items()}
+    return Comparison(
+        solidity=solidity,
+        thickness=mat.thickness,
+        fiber_diameter=diameter,
+        face_velocity=flow.face_velocity,
+        models=rows,
+        knudsen=kn,
+        reynolds=re,
+        regime=slip.regime(kn),
+        attribution=_attribute(rows, reference, mesh_solidity),
+        fiber_diameters=diameters,
+    )
+
+
+def _attribute(rows: dict[str, ModelRow], reference: str, solidity: float) -> dict[str, float]:
+    own = rows[reference]
+    within = [row.mesh for name, row in rows.items() if MODELS[name].low <= solidity <= MODELS[name].high]
+    return {
+        "overlap": own.surface / own.nominal - 1.0,
+        "meshing": own.mesh / own.surface - 1.0,
+        "model_low": min([*within, own.mesh]) / own.mesh - 1.0,
+        "model_high": max([*within, own.mesh]) / own.mesh - 1.0,
+    }
