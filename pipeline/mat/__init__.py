@@ -1,5 +1,7 @@
 """Random fiber mats: drawn, deposited, measured, exchanged."""
 
+from pipeline.mat.audit import Audit, audit
+from pipeline.mat.exchange import read_fibers, write_fibers, write_spaceclaim
 from pipeline.mat.generate import generate
 from pipeline.mat.measures import MatMeasures, measure
 from pipeline.mat.settings import (
@@ -10,15 +12,24 @@ from pipeline.mat.settings import (
     MatSettings,
     Stop,
 )
+from pipeline.mat.tally import Predict, StopReport, report_stop
 
 __all__ = [
     "ArraySettings",
+    "Audit",
     "BoxSettings",
     "FileSettings",
     "LayeredSettings",
     "MatMeasures",
     "MatSettings",
+    "Predict",
     "Stop",
+    "StopReport",
+    "audit",
     "generate",
     "measure",
+    "read_fibers",
+    "report_stop",
+    "write_fibers",
+    "write_spaceclaim",
 ]

@@ -55,15 +55,17 @@ def crossings(
         cross = chord[2] * chords[k, 3] - chord[3] * chords[k, 2]
         if cross == 0.0:
             continue
-        for dx, dy in _shifts(chord, chords[k], 0.0, period):
-            gap_x, gap_y = chords[k, 0] + dx - chord[0], chords[k, 1] + dy - chord[1]
-            x = (gap_x * chords[k, 3] - gap_y * chords[k, 2]) / cross
-            t = (gap_x * chord[3] - gap_y * chord[2]) / cross
-            if 0.0 <= x <= chord[4] and 0.0 <= t <= chords[k, 4]:
-                supports = _with_room(supports, count)
-                supports[count, 0] = x
-                supports[count, 1] = _height(nodes, first[k], first[k + 1], t) + radii[k] + radius + spacing
-                count += 1
+        columns, rows = _images(chord, chords[k], 0, 0.0, period), _images(chord, chords[k], 1, 0.0, period)
+        for i in range(columns[0], columns[1]):
+            for j in range(rows[0], rows[1]):
+                gap_x, gap_y = chords[k, 0] + i * period - chord[0], chords[k, 1] + j * period - chord[1]
+                x = (gap_x * chords[k, 3] - gap_y * chords[k, 2]) / cross
+                t = (gap_x * chord[3] - gap_y * chord[2]) / cross
+                if 0.0 <= x <= chord[4] and 0.0 <= t <= chords[k, 4]:
+                    supports = _with_room(supports, count)
+                    supports[count, 0] = x
+                    supports[count, 1] = _height(nodes[first[k] : first[k + 1]], t) + radii[k] + radius + spacing
+                    count += 1
     return supports[:count]
 
 
@@ -97,39 +99,58 @@ def clearances(
     """
     supports = np.empty((64, 2))
     count = 0
-    length = chord[4]
-    steep = np.sqrt(1.0 + slope * slope)
     for k in range(len(radii)):
         reach = (radii[k] + radius + spacing) * (1.0 + _LIFT)
-        # along and across the chord, per length of the earlier fiber
-        along = chord[2] * chords[k, 2] + chord[3] * chords[k, 3]
-        across = chord[2] * chords[k, 3] - chord[3] * chords[k, 2]
-        for dx, dy in _shifts(chord, chords[k], reach, period):
-            gap_x, gap_y = chords[k, 0] + dx - chord[0], chords[k, 1] + dy - chord[1]
-            xi_start = chord[2] * gap_x + chord[3] * gap_y
-            rho_start = chord[2] * gap_y - chord[3] * gap_x
-            begin, end = _stretch(rho_start, across, -reach, reach, 0.0, chords[k, 4])
-            begin, end = _stretch(xi_start, along, -reach, length + reach, begin, end)
-            if begin > end:
-                continue
-            node = _segment(nodes, first[k], first[k + 1], begin)
-            while node < first[k + 1] - 1 and nodes[node, 0] <= end:
-                t0, t1 = max(begin, nodes[node, 0]), min(end, nodes[node + 1, 0])
-                rise = (nodes[node + 1, 1] - nodes[node, 1]) / (nodes[node + 1, 0] - nodes[node, 0])
-                cuts = max(1, int(np.ceil((t1 - t0) * abs(along) / (4.0 * reach))))
-                for cut in range(cuts):
-                    ta = t0 + (t1 - t0) * cut / cuts
-                    tb = t0 + (t1 - t0) * (cut + 1) / cuts
-                    za = nodes[node, 1] + rise * (ta - nodes[node, 0])
-                    piece = (xi_start + along * ta, rho_start + across * ta, za)
-                    step = (along * (tb - ta), across * (tb - ta), rise * (tb - ta))
-                    fall = _highest(piece, step, slope, steep, reach)
-                    climb = _highest(piece, step, -slope, steep, reach)
-                    supports = _with_room(supports, count)
-                    supports[count, 0], supports[count, 1] = _apex(fall, climb, slope, length)
-                    count += 1
-                node += 1
+        columns, rows = _images(chord, chords[k], 0, reach, period), _images(chord, chords[k], 1, reach, period)
+        for i in range(columns[0], columns[1]):
+            for j in range(rows[0], rows[1]):
+                gap_x, gap_y = chords[k, 0] + i * period - chord[0], chords[k, 1] + j * period - chord[1]
+                supports, count = _tents(
+                    chord, chords[k], gap_x, gap_y, nodes[first[k] : first[k + 1]], reach, slope, supports, count
+                )
     return supports[:count]
+
+
+@compiled
+def _tents(
+    chord: Floats,
+    other: Floats,
+    gap_x: float,
+    gap_y: float,
+    nodes: Floats,
+    reach: float,
+    slope: float,
+    supports: Floats,
+    count: int,
+) -> tuple[Floats, int]:
+    """Add the supports over one earlier fiber, which starts `gap_x`, `gap_y` from the chord's start."""
+    # along and across the chord: where the earlier fiber starts, and how fast it goes
+    xi_start, rho_start = chord[2] * gap_x + chord[3] * gap_y, chord[2] * gap_y - chord[3] * gap_x
+    along, across = chord[2] * other[2] + chord[3] * other[3], chord[2] * other[3] - chord[3] * other[2]
+    begin, end = _stretch(rho_start, across, -reach, reach, 0.0, other[4])
+    if begin > end:
+        return supports, count
+    begin, end = _stretch(xi_start, along, -reach, chord[4] + reach, begin, end)
+    if begin > end:
+        return supports, count
+    steep = np.sqrt(1.0 + slope * slope)
+    node = _segment(nodes, begin)
+    while node < len(nodes) - 1 and nodes[node, 0] <= end:
+        t0, t1 = max(begin, nodes[node, 0]), min(end, nodes[node + 1, 0])
+        rise = (nodes[node + 1, 1] - nodes[node, 1]) / (nodes[node + 1, 0] - nodes[node, 0])
+        cuts = max(1, int(np.ceil((t1 - t0) * abs(along) / (4.0 * reach))))
+        dt = (t1 - t0) / cuts
+        step = (along * dt, across * dt, rise * dt)
+        for cut in range(cuts):
+            t = t0 + cut * dt
+            piece = (xi_start + along * t, rho_start + across * t, nodes[node, 1] + rise * (t - nodes[node, 0]))
+            fall = _highest(piece, step, slope, steep, reach)
+            climb = _highest(piece, step, -slope, steep, reach)
+            supports = _with_room(supports, count)
+            supports[count, 0], supports[count, 1] = _apex(fall, climb, slope, chord[4])
+            count += 1
+        node += 1
+    return supports, count
 
 
 @compiled
@@ -176,9 +197,9 @@ def _stretch(start: float, rate: float, low: float, high: float, begin: float, e
 
 
 @compiled
-def _segment(nodes: Floats, low: int, high: int, t: float) -> int:
-    """Node at which the segment starts that holds `t`, among the nodes `low` to `high` of a fiber."""
-    high -= 1
+def _segment(nodes: Floats, t: float) -> int:
+    """Node at which the segment starts that holds the place `t` along its fiber."""
+    low, high = 0, len(nodes) - 1
     while high - low > 1:
         middle = (low + high) // 2
         if nodes[middle, 0] <= t:
@@ -189,26 +210,21 @@ def _segment(nodes: Floats, low: int, high: int, t: float) -> int:
 
 
 @compiled
-def _height(nodes: Floats, low: int, high: int, t: float) -> float:
-    node = _segment(nodes, low, high, t)
+def _height(nodes: Floats, t: float) -> float:
+    node = _segment(nodes, t)
     share = (t - nodes[node, 0]) / (nodes[node + 1, 0] - nodes[node, 0])
     height: float = nodes[node, 1] + share * (nodes[node + 1, 1] - nodes[node, 1])
     return height
 
 
 @compiled
-def _shifts(chord: Floats, other: Floats, reach: float, period: float) -> list[tuple[float, float]]:
-    """Shifts by whole periods that may bring the other fiber within reach of the chord."""
-    shifts = [(0.0, 0.0)]
-    if period > 0.0:
-        shifts.clear()
-        far = 0.5 * (chord[4] + other[4]) + reach
-        mid_x = other[0] + 0.5 * other[4] * other[2] - chord[0] - 0.5 * chord[4] * chord[2]
-        mid_y = other[1] + 0.5 * other[4] * other[3] - chord[1] - 0.5 * chord[4] * chord[3]
-        for i in range(int(np.ceil((-far - mid_x) / period)), int(np.floor((far - mid_x) / period)) + 1):
-            for j in range(int(np.ceil((-far - mid_y) / period)), int(np.floor((far - mid_y) / period)) + 1):
-                shifts.append((i * period, j * period))
-    return shifts
+def _images(chord: Floats, other: Floats, axis: int, reach: float, period: float) -> tuple[int, int]:
+    """First and one past the last period by which the other fiber may come within reach of the chord along an axis."""
+    if period == 0.0:
+        return 0, 1
+    far = 0.5 * (chord[4] + other[4]) + reach
+    gap = other[axis] + 0.5 * other[4] * other[2 + axis] - chord[axis] - 0.5 * chord[4] * chord[2 + axis]
+    return int(np.ceil((-far - gap) / period)), int(np.floor((far - gap) / period)) + 1
 
 
 @compiled

@@ -34,6 +34,7 @@ def grow(
         if isinstance(settings, BoxSettings):
             nodes = _anywhere(chord, radius, settings, rng)
         else:
+            _refuse_a_ring(settings, radius)
             nodes = drop(pile, chord, radius, settings.relaxation_slope, settings.contact, settings.spacing)
         pile.add(ends, chord, radius, nodes)
         steps = np.diff(nodes, axis=0)
@@ -77,3 +78,13 @@ def _anywhere(chord: Floats, radius: float, settings: BoxSettings, rng: np.rando
         )
     low, high = radius + room * rng.random(2)
     return np.array([[0.0, low], [chord[4], high]])
+
+
+def _refuse_a_ring(settings: LayeredSettings, radius: float) -> None:
+    """Refuse a clear fiber so long that it could meet its own image through the sides of a periodic plan."""
+    room = settings.side - settings.wrapped_length
+    if settings.contact == "clear" and settings.periodic and room < 2.0 * radius + settings.spacing:
+        raise CaseError(
+            f"a fiber of diameter {2e6 * radius:.3g} um and length {settings.wrapped_length * 1e6:.3g} um could meet "
+            f"its own image through the sides of a plan of {settings.side * 1e6:.3g} um; set a shorter mat.fiber_length"
+        )

@@ -7,6 +7,52 @@ import numpy as np
 
 from pipeline.data import Mat
 from pipeline.geometry.triangles import Floats
+from pipeline.mat.neighbors import near_fibers
+
+CONTACT_GAP = 0.01
+"""Fibers count as touching whose surfaces are this share of the sum of their radii apart, or less."""
+
+_LAYERS = 50
+
+
+@dataclass(frozen=True, slots=True)
+class DiameterMoments:
+    """The diameters of the fibers that are there, each fiber counted once unless said otherwise.
+
+    Parameters
+    ----------
+    mean, std, min, max : float [m]
+    skewness : float [-]
+        0 for fibers of one diameter.
+    length_weighted : float [m]
+        Mean with each fiber's length as its weight.
+    surface_weighted : float [m]
+        Sum of d^2 l over sum of d l: keeps volume and surface.
+    """
+
+    mean: float
+    std: float
+    min: float
+    max: float
+    skewness: float
+    length_weighted: float
+    surface_weighted: float
+
+
+@dataclass(frozen=True, slots=True)
+class SolidityProfile:
+    """Solidity of equally thick layers of the slab.
+
+    Parameters
+    ----------
+    z : tuple of float [m]
+        Middle of each layer.
+    solidity : tuple of float [-]
+        Cylinders summed; what fibers share counts twice.
+    """
+
+    z: tuple[float, ...]
+    solidity: tuple[float, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +69,20 @@ class MatMeasures:
     thickness : float [m]
         Extent of the slab: in a layered mat the highest axis plus its radius.
     solidity : float [-]
-        Summed cylinder volume over the slab's volume; what fibers share counts twice.
+        Summed cylinder volume over the slab's volume: what fibers share counts twice.
+    covered_fraction : float [-]
+        Part of the face that at least one fiber covers, by a grid of eight cells to a diameter (`relief`).
+    robust_thickness : float [m]
+        Mean, over tiles of the face one mean radius wide, of the highest surface in the tile; tiles without a fiber
+        are left out.
+    total_length : float [m]
+        Length of all fibers.
+    contacts_per_fiber : float [-]
+        Other fibers that a fiber touches or overlaps, on average: surfaces at most 1 % of the radii's sum apart.
+    orientation : 3 x 3 tuple of float [-]
+        Mean of the outer product of the axis' direction with itself, by length; its trace is 1.
+    diameters : DiameterMoments
+    profile : SolidityProfile
     """
 
     fibers: int
@@ -31,6 +90,13 @@ class MatMeasures:
     coverage: float
     thickness: float
     solidity: float
+    covered_fraction: float
+    robust_thickness: float
+    total_length: float
+    contacts_per_fiber: float
+    orientation: tuple[tuple[float, ...], ...]
+    diameters: DiameterMoments
+    profile: SolidityProfile
 
 
 def measure(mat: Mat) -> MatMeasures:
@@ -45,18 +111,39 @@ def measure(mat: Mat) -> MatMeasures:
     Returns
     -------
     MatMeasures
+
+    Examples
+    --------
+    >>> from pipeline.mat import ArraySettings, generate
+    >>> array = generate(ArraySettings(arrangement="square", solidity=0.1, fiber_diameter=1e-6, rows=4))
+    >>> round(measure(array).solidity, 12)
+    0.1
     """
+    # numba is loaded where a mat is measured, not where a case file is read
+    from pipeline.mat.layers import solidity_profile
+    from pipeline.mat.relief import mean_top, relief
+
     start = mat.segment_starts()
     step = mat.nodes[start + 1] - mat.nodes[start]
-    radius = mat.radius[mat.segment_fibers()]
+    fiber = mat.segment_fibers()
+    radius = mat.radius[fiber]
     inside = share_inside(mat)
-    plan = np.hypot(step[:, 0], step[:, 1])
+    length = inside * mat.segment_lengths()
+    tops = relief(mat)
+    touching = near_fibers(mat, (1.0 + CONTACT_GAP) * mat.radius)
     return MatMeasures(
         fibers=mat.fibers,
         segments=mat.segments,
-        coverage=float((inside * 2.0 * radius * plan).sum()) / mat.slab.face_area,
+        coverage=float((inside * 2.0 * radius * np.hypot(step[:, 0], step[:, 1])).sum()) / mat.slab.face_area,
         thickness=mat.thickness,
-        solidity=float((inside * math.pi * radius**2 * mat.segment_lengths()).sum()) / mat.slab.volume,
+        solidity=float((math.pi * radius**2 * length).sum()) / mat.slab.volume,
+        covered_fraction=float(np.isfinite(tops).mean()),
+        robust_thickness=mean_top(mat, tops),
+        total_length=float(length.sum()),
+        contacts_per_fiber=2.0 * int((touching.first != touching.second).sum()) / mat.fibers,
+        orientation=_orientation(step, length),
+        diameters=_moments(2.0 * mat.radius, _per_fiber(mat, length)),
+        profile=_profile(mat, solidity_profile(mat, inside, _LAYERS)),
     )
 
 
@@ -71,3 +158,35 @@ def share_inside(mat: Mat) -> Floats:
             on_side = (mat.nodes[start, axis] == side) & (mat.nodes[start + 1, axis] == side)
             share[on_side] *= 0.5
     return share
+
+
+def _per_fiber(mat: Mat, length: Floats) -> Floats:
+    sums: Floats = np.add.reduceat(length, mat.first[:-1] - np.arange(mat.fibers))
+    return sums
+
+
+def _orientation(step: Floats, length: Floats) -> tuple[tuple[float, ...], ...]:
+    direction = step / np.linalg.norm(step, axis=1)[:, None]
+    tensor = np.einsum("k,ki,kj->ij", length, direction, direction) / length.sum()
+    return tuple(tuple(row) for row in tensor.tolist())
+
+
+def _moments(diameters: Floats, length: Floats) -> DiameterMoments:
+    mean, std = float(diameters.mean()), float(diameters.std())
+    # the rounding of the mean would pass for a spread
+    same = diameters.min() == diameters.max()
+    return DiameterMoments(
+        mean=mean,
+        std=0.0 if same else std,
+        min=float(diameters.min()),
+        max=float(diameters.max()),
+        skewness=0.0 if same else float((((diameters - mean) / std) ** 3).mean()),
+        length_weighted=float((diameters * length).sum() / length.sum()),
+        surface_weighted=float((diameters**2 * length).sum() / (diameters * length).sum()),
+    )
+
+
+def _profile(mat: Mat, solidity: Floats) -> SolidityProfile:
+    layers = len(solidity)
+    z = mat.slab.lower[2] + (np.arange(layers) + 0.5) * mat.thickness / layers
+    return SolidityProfile(tuple(z.tolist()), tuple(solidity.tolist()))

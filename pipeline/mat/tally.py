@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from pipeline.mat.measures import MatMeasures
 from pipeline.mat.settings import Stop
 
 Predict = Callable[[float, float, float], float]
@@ -65,3 +66,44 @@ class Tally:
                 raise ValueError(f"a stop by {stop.quantity} needs a model that predicts it")
             return predict(self.solidity, self.thickness, self.diameters / self.count)
         return float(getattr(self, stop.quantity))
+
+
+@dataclass(frozen=True, slots=True)
+class StopReport:
+    """By how much the last fiber brought a mat beyond its stop [SI]; `relative` is that over the target [-]."""
+
+    quantity: str
+    target: float
+    reached: float
+    overshoot: float
+    relative: float
+
+
+def report_stop(stop: Stop, measures: MatMeasures, predict: Predict | None = None) -> StopReport:
+    """Tell by how much a mat goes beyond its stop.
+
+    Parameters
+    ----------
+    stop : Stop
+    measures : MatMeasures
+        Of the mat that the stop ended.
+    predict : callable, optional
+        As for `pipeline.mat.generate`.
+
+    Returns
+    -------
+    StopReport
+
+    Raises
+    ------
+    ValueError
+        If a model has to predict the quantity and `predict` is None.
+    """
+    if stop.predicted:
+        if predict is None:
+            raise ValueError(f"a stop by {stop.quantity} needs a model that predicts it")
+        reached = predict(measures.solidity, measures.thickness, measures.diameters.mean)
+    else:
+        reached = float(measures.fibers if stop.quantity == "count" else getattr(measures, stop.quantity))
+    beyond = reached - stop.target
+    return StopReport(stop.quantity, stop.target, reached, beyond, beyond / stop.target)

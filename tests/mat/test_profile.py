@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pipeline.geometry.triangles import Floats
@@ -53,6 +53,7 @@ supports = st.lists(st.tuples(st.floats(0, 100), st.floats(0, 30)), max_size=40)
 
 
 @given(supports, st.floats(0, 1))
+@settings(deadline=None)  # the first call compiles
 def test_the_profile_is_the_least_one_above_all_supports(points: list[tuple[float, float]], slope: float) -> None:
     x, h = (np.array([p[k] for p in points], dtype=float) for k in (0, 1))
     nodes = profile(x, h, slope, 0.5, 100.0)
