@@ -2,6 +2,7 @@
 
 from pipeline.analytics.comparison import compare
 from pipeline.analytics.growth import predictor
+from pipeline.analytics.options import read_options
 from pipeline.analytics.prediction import Prediction, filter_of_comparison, filter_of_mat, predict
 from pipeline.analytics.tables import comparison_tables, prediction_tables
 
@@ -14,4 +15,5 @@ __all__ = [
     "predict",
     "prediction_tables",
     "predictor",
+    "read_options",
 ]

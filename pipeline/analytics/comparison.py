@@ -9,6 +9,9 @@ from pipeline.analytics.pressure_drop import pressure_drop
 from pipeline.analytics.pressure_models import MODELS, PressureModel
 from pipeline.data import Comparison, Flow, Mat, ModelRow
 
+REFERENCE = "davies"
+"""The model that the parts of a comparison are told of: the paper's choice."""
+
 
 def nominal_solidity(mat: Mat) -> float:
     """Volume of all the fibers' cylinders over the slab's volume, overlaps counted twice [-]."""
@@ -16,9 +19,7 @@ def nominal_solidity(mat: Mat) -> float:
     return float((section * mat.segment_lengths()).sum()) / mat.slab.volume
 
 
-def compare(
-    mat: Mat, surface_solidity: float, mesh_solidity: float, flow: Flow, reference: str = "davies"
-) -> Comparison:
+def compare(mat: Mat, surface_solidity: float, mesh_solidity: float, flow: Flow) -> Comparison:
     """Predict the pressure drop of one mat from three solidities with every model.
 
     Parameters
@@ -29,14 +30,12 @@ def compare(
     mesh_solidity : float [-]
         1 minus the mesh's air over the slab.
     flow : Flow
-    reference : str
-        The model that the attribution is about, one of `MODELS`.
 
     Returns
     -------
     Comparison
-        In each row, nominal + overlap + meshing = mesh. ``attribution`` tells the same of the reference model in
-        relative terms, beside the spread of all models that are within their solidity range.
+        In each row, nominal + overlap + meshing = mesh. ``attribution`` tells the same of `REFERENCE` in relative
+        terms, beside the spread of all models that are within their solidity range.
     """
     solidity = {"nominal": nominal_solidity(mat), "surface": surface_solidity, "mesh": mesh_solidity}
     diameters = mat_diameters(mat, flow, mesh_solidity)
@@ -76,13 +75,13 @@ def compare(
         knudsen=kn,
         reynolds=re,
         regime=slip.regime(kn),
-        attribution=_attribute(rows, reference, mesh_solidity),
+        attribution=_attribute(rows, mesh_solidity),
         fiber_diameters=diameters,
     )
 
 
-def _attribute(rows: dict[str, ModelRow], reference: str, solidity: float) -> dict[str, float]:
-    own = rows[reference]
+def _attribute(rows: dict[str, ModelRow], solidity: float) -> dict[str, float]:
+    own = rows[REFERENCE]
     within = [row.mesh for name, row in rows.items() if MODELS[name].low <= solidity <= MODELS[name].high]
     return {
         "overlap": own.surface / own.nominal - 1.0,

@@ -190,8 +190,7 @@ def henry_ariman(solidity: Real) -> Real:
 
     References
     ----------
-    .. [1] F. S. Henry and T. Ariman, A staggered array model of a fibrous filter with electrical enhancement,
-       Particul. Sci. Technol. 4 (1986) 455-473.
+    .. [1] F. S. Henry and T. Ariman, An evaluation of the Kuwabara model, Particul. Sci. Technol. 1 (1983) 1-20.
 
     Examples
     --------

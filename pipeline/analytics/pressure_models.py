@@ -143,7 +143,7 @@ MODELS = MappingProxyType(
             _stuck(formulas.happel),
         ),
         "henry_ariman": PressureModel(
-            "Henry and Ariman (1986)",
+            "Henry and Ariman (1983)",
             "parallel cylinders across the flow",
             0.015,
             0.26,

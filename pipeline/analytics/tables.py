@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from pipeline.analytics.comparison import REFERENCE
 from pipeline.analytics.prediction import Prediction
 from pipeline.analytics.pressure_models import MODELS
 from pipeline.data import Comparison
@@ -97,7 +98,7 @@ def prediction_tables(prediction: Prediction) -> tuple[Table, ...]:
 
 
 def comparison_tables(comparison: Comparison) -> tuple[Table, ...]:
-    """Lay a comparison out as tables: pressure drops by model and solidity, and what the differences come from.
+    """Lay a comparison out as tables: pressure drop by model and solidity, what moves it, and by mean diameter.
 
     Parameters
     ----------
@@ -119,7 +120,13 @@ def comparison_tables(comparison: Comparison) -> tuple[Table, ...]:
         ("meshing (mesh against surface)", f"{a['meshing']:+.2%}"),
         ("choice of model (those in their solidity range)", f"{a['model_low']:+.0%} to {a['model_high']:+.0%}"),
     )
+    reference = MODELS[REFERENCE].title
+    means = tuple(
+        (name, length(diameter), _pascal(c.models[REFERENCE].mesh * (c.fiber_diameter / diameter) ** 2))
+        for name, diameter in c.fiber_diameters.items()
+    )
     return (
         Table("Pressure drop [Pa] by solidity", ("model", *heads, "outside its range"), rows),
-        Table("What moves it", ("part", "of the reference model"), parts),
+        Table("What moves it", ("part", f"of {reference}"), parts),
+        Table(f"Which mean diameter is entered ({reference}, mesh)", ("mean", "diameter", "Pa"), means),
     )

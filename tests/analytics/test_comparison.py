@@ -142,7 +142,12 @@ def test_the_volume_mean_gives_the_summed_drag_without_slip() -> None:
 
 
 def test_the_tables_tell_each_model_and_each_part() -> None:
-    by_model, parts = comparison_tables(compare(EQUAL, 0.09, 0.089, FLOW))
+    by_model, parts, means = comparison_tables(compare(EQUAL, 0.09, 0.089, FLOW))
     assert [row[0] for row in by_model.rows] == [model.title for model in MODELS.values()]
     assert all(len(row) == len(by_model.columns) for row in by_model.rows)
     assert [row[0].split(" ")[0] for row in parts.rows] == ["overlap", "meshing", "choice"]
+    assert [row[0] for row in means.rows] == ["count", "volume", "surface", "effective"]
+    # equal fibers have one mean diameter, and it gives the model's own pressure drop
+    assert {row[1:] for row in means.rows[:3]} == {
+        ("1.4 um", f"{compare(EQUAL, 0.09, 0.089, FLOW).models['davies'].mesh:.4g}")
+    }
