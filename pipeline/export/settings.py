@@ -4,10 +4,20 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
-Format = Literal["openfoam", "vtk", "fluent", "gmsh", "abaqus", "nastran", "su2", "med", "cgns", "stl"]
+Format = Literal["openfoam", "vtk", "fluent", "gmsh", "abaqus", "nastran", "su2", "medit"]
 Encoding = Literal["binary", "ascii"]
 Dialect = Literal["com", "org"]
 FiberWall = Literal["no_slip", "slip"]
+
+_REFUSED = {
+    **dict.fromkeys(
+        ("stl", "ply", "off", "obj"), "holds a surface, not a volume (the fibers' surface stands in the surface stage)"
+    ),
+    **dict.fromkeys(
+        ("tetgen", "xdmf", "vtu", "tecplot", "ugrid"), "would lose the patches; take openfoam, vtk or gmsh"
+    ),
+    **dict.fromkeys(("med", "cgns", "exodus", "h5m"), "needs HDF5, which is not installed with fibertwin; take gmsh"),
+}
 
 
 class ExportSettings(BaseModel):
@@ -29,6 +39,14 @@ class ExportSettings(BaseModel):
         description="What the air does on the fibers: stand still, or slip by the length that belongs to its mean "
         "free path (needed where a fiber is thinner than about 10 um).",
     )
+
+    @field_validator("formats", mode="before")
+    @classmethod
+    def _tell_why_not(cls, formats: object) -> object:
+        for name in formats if isinstance(formats, (list, tuple)) else ():
+            if isinstance(name, str) and name in _REFUSED:
+                raise ValueError(f"{name} {_REFUSED[name]}")
+        return formats
 
     @field_validator("formats")
     @classmethod

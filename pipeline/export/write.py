@@ -4,8 +4,11 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from pipeline.data import FaceMesh, Floats, Flow
+from pipeline.export.exchange import SUFFIXES, write_exchange
+from pipeline.export.fluent import write_fluent
 from pipeline.export.openfoam import write_openfoam
 from pipeline.export.settings import ExportSettings
+from pipeline.export.su2 import write_su2
 from pipeline.export.vtk import write_vtk
 from pipeline.progress import Progress, silent
 
@@ -50,4 +53,10 @@ def export(
             write_openfoam(mesh, place, flow, sides, settings, progress)
         elif name == "vtk":
             write_vtk(mesh, place, fields or {}, progress)
+        elif name == "fluent":
+            write_fluent(mesh, place / "mesh.msh", sides, progress)
+        elif name == "su2":
+            write_su2(mesh, place / "mesh.su2", progress)
+        else:
+            write_exchange(mesh, place / f"mesh{SUFFIXES[name]}", name, progress)
     return settings.formats

@@ -13,7 +13,7 @@ _COMMENT = re.compile(rb"/\*.*?\*/|//[^\n]*", re.DOTALL)
 _HEADER = re.compile(rb"FoamFile\s*\{(?P<body>.*?)\}\s*", re.DOTALL)
 _COUNT = re.compile(rb"\s*(?P<count>\d{1,10})\s*")
 LARGEST_FILE = 20_000_000_000
-"""No mesh file that this machine could hold in memory is larger than this many bytes."""
+"""A file of more bytes is refused before it is opened: its mesh would not fit into memory."""
 
 
 def read_openfoam(case: Path) -> FaceMesh:

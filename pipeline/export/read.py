@@ -1,0 +1,45 @@
+"""Meshes that are not ours: an OpenFOAM case, Fluent, or any file that meshio reads."""
+
+from pathlib import Path
+
+from pipeline.data import FaceMesh
+from pipeline.errors import StageError
+from pipeline.export.openfoam.read import LARGEST_FILE, read_openfoam
+from pipeline.export.read_exchange import read_exchange
+from pipeline.export.read_fluent import read_fluent
+
+
+def read_mesh(path: Path) -> FaceMesh:
+    """Read a mesh of tetrahedra, hexahedra, prisms, pyramids or, from OpenFOAM and Fluent, any polyhedra.
+
+    Parameters
+    ----------
+    path : Path
+        An OpenFOAM case (its folder, its `polyMesh` folder, or a ``.foam`` file in it), or a mesh file: Fluent's
+        ``.msh`` or ``.cas`` in text, VTK's ``.vtu`` or ``.vtk``, gmsh's ``.msh``, or what else meshio reads.
+
+    Returns
+    -------
+    FaceMesh
+        With the file's patches where it names any, otherwise with one patch `boundary`.
+
+    Raises
+    ------
+    StageError
+        If the path is no mesh, or the mesh is damaged.
+    """
+    if path.suffix == ".foam":
+        path = path.parent
+    if path.is_dir():
+        return read_openfoam(path)
+    try:
+        size = path.stat().st_size
+        with path.open("rb") as file:
+            start = file.read(4096)
+    except OSError as problem:
+        raise StageError(f"cannot read {path}: {(problem.strerror or str(problem)).lower()}") from problem
+    if size > LARGEST_FILE:
+        raise StageError(f"{path} has {size} bytes, more than the {LARGEST_FILE} that a mesh file may have")
+    if path.suffix in (".msh", ".cas") and start.lstrip()[:1] == b"(":
+        return read_fluent(path)
+    return read_exchange(path)

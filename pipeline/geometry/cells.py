@@ -1,0 +1,138 @@
+"""Cells of the usual kinds, or any polyhedra, to faces between an owner and a neighbour."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pipeline.geometry.tets import FACES
+from pipeline.geometry.triangles import Ints
+
+KINDS = {
+    "tetra": FACES,
+    "pyramid": np.array([[0, 3, 2, 1], [0, 1, 4, -1], [1, 2, 4, -1], [2, 3, 4, -1], [3, 0, 4, -1]]),
+    "wedge": np.array([[0, 2, 1, -1], [3, 4, 5, -1], [0, 1, 4, 3], [1, 2, 5, 4], [2, 0, 3, 5]]),
+    "hexahedron": np.array(
+        [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
+    ),
+}  # fmt: skip
+"""Faces of each kind by its local corners, counterclockwise seen from outside, -1 where a face has three."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class CellFaces:
+    """Every polygon of a mesh once.
+
+    Parameters
+    ----------
+    polygons : (faces, width) int array
+        Corners, counterclockwise seen from outside the owner, filled up with -1; internal faces first, sorted by
+        (owner, neighbour), then the boundary by owner.
+    owner : (faces,) int array
+    neighbour : (internal,) int array
+    """
+
+    polygons: Ints
+    owner: Ints
+    neighbour: Ints
+
+
+def polygons_of(kind: str, cells: Ints) -> Ints:
+    """Give the faces of cells of one kind.
+
+    Parameters
+    ----------
+    kind : str
+        One of `KINDS`.
+    cells : (m, corners) int array
+
+    Returns
+    -------
+    (m * faces of the kind, width) int array
+        The faces of a cell stand together; filled up with -1.
+
+    Examples
+    --------
+    >>> polygons_of("wedge", np.array([[10, 11, 12, 13, 14, 15]])).tolist()[0]
+    [10, 12, 11, -1]
+    """
+    table = KINDS[kind]
+    faces = np.where(table >= 0, cells[:, table], -1)
+    return faces.reshape(-1, table.shape[1])
+
+
+def cell_faces(polygons: Ints, cell: Ints) -> CellFaces:
+    """Match the polygons of neighbour cells.
+
+    Parameters
+    ----------
+    polygons : (k, width) int array
+        Faces of all cells, filled up with -1.
+    cell : (k,) int array
+        The cell that each belongs to.
+
+    Returns
+    -------
+    CellFaces
+
+    Raises
+    ------
+    ValueError
+        If more than two cells share a face, or one cell has a face twice.
+    """
+    by_key, same = matching_rows(polygons)
+    first, second = by_key[:-1][same], by_key[1:][same]
+    swap = cell[first] > cell[second]
+    ours, theirs = np.where(swap, second, first), np.where(swap, first, second)
+    twice = int((cell[ours] == cell[theirs]).sum())
+    if twice:
+        raise ValueError(f"{twice} cells have the same face twice")
+    order = np.lexsort((cell[theirs], cell[ours]))
+    ours, theirs = ours[order], theirs[order]
+    single = np.ones(len(polygons), bool)
+    single[first] = single[second] = False
+    outside = np.flatnonzero(single)
+    outside = outside[np.argsort(cell[outside], kind="stable")]
+    faces = np.concatenate([ours, outside])
+    return CellFaces(polygons[faces], cell[faces], cell[theirs])
+
+
+def matching_rows(polygons: Ints) -> tuple[Ints, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]:
+    """Sort polygons so that those of the same corners stand next to each other.
+
+    Returns
+    -------
+    order : (k,) int array
+    same : (k - 1,) bool array
+        Whether ``order[i]`` and ``order[i + 1]`` have the same corners.
+
+    Raises
+    ------
+    ValueError
+        If three have the same corners.
+    """
+    corners = np.sort(polygons, axis=1)
+    order = np.lexsort(corners.T)
+    same = (corners[order][1:] == corners[order][:-1]).all(axis=1)
+    crowded = int((same[1:] & same[:-1]).sum())
+    if crowded:
+        raise ValueError(f"{crowded} faces belong to more than two cells")
+    return order, same
+
+
+def rows_of(polygons: Ints, among: Ints) -> Ints:
+    """Find each polygon among others of the same corners, whatever corner either starts with.
+
+    Parameters
+    ----------
+    polygons, among : (k, width) and (m, width) int arrays
+        Filled up with -1; `among` has no polygon twice.
+
+    Returns
+    -------
+    (k,) int array
+        Row of `among`, -1 where there is none.
+    """
+    both = np.sort(np.concatenate([among, polygons]), axis=1)
+    _, index, inverse = np.unique(both, axis=0, return_index=True, return_inverse=True)
+    found = index[inverse.ravel()[len(among) :]]
+    return np.where(found < len(among), found, -1)
