@@ -61,7 +61,7 @@ def draw_efficiency(axes: "Axes", medium: FilterSettings, settings: FlowSettings
         )
     axes.plot(lowest["diameter"] * 1e9, 100.0 * lowest["efficiency"], "o", color=_MECHANISM_COLOR["total"])
     axes.annotate(
-        f"{lowest['diameter'] * 1e9:.1f} nm, {lowest['efficiency']:.1%}",
+        f"{lowest['diameter'] * 1e9:.1f} nm, {lowest['efficiency']:.2%}",
         (lowest["diameter"] * 1e9, 100.0 * lowest["efficiency"]),
         xytext=(0, -14),
         textcoords="offset points",
