@@ -60,8 +60,8 @@ def polygons_of(kind: str, cells: Ints) -> Ints:
     return faces.reshape(-1, table.shape[1])
 
 
-def cell_faces(polygons: Ints, cell: Ints) -> CellFaces:
-    """Match the polygons of neighbour cells.
+def cell_faces(polygons: Ints, cell: Ints, pairs: tuple[Ints, Ints] | None = None) -> CellFaces:
+    """Put the polygons of all cells into a solver's order, those of two cells once.
 
     Parameters
     ----------
@@ -69,6 +69,8 @@ def cell_faces(polygons: Ints, cell: Ints) -> CellFaces:
         Faces of all cells, filled up with -1.
     cell : (k,) int array
         The cell that each belongs to.
+    pairs : optional
+        Of `matched_pairs`, where they are known.
 
     Returns
     -------
@@ -79,8 +81,7 @@ def cell_faces(polygons: Ints, cell: Ints) -> CellFaces:
     ValueError
         If more than two cells share a face, or one cell has a face twice.
     """
-    by_key, same = matching_rows(polygons)
-    first, second = by_key[:-1][same], by_key[1:][same]
+    first, second = pairs or matched_pairs(polygons)
     swap = cell[first] > cell[second]
     ours, theirs = np.where(swap, second, first), np.where(swap, first, second)
     twice = int((cell[ours] == cell[theirs]).sum())
@@ -96,27 +97,37 @@ def cell_faces(polygons: Ints, cell: Ints) -> CellFaces:
     return CellFaces(polygons[faces], cell[faces], cell[theirs])
 
 
-def matching_rows(polygons: Ints) -> tuple[Ints, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]:
-    """Sort polygons so that those of the same corners stand next to each other.
+def matched_pairs(polygons: Ints) -> tuple[Ints, Ints]:
+    """Find the polygons that have the same corners, in whatever order.
+
+    Parameters
+    ----------
+    polygons : (k, width) int array
+        Filled up with -1.
 
     Returns
     -------
-    order : (k,) int array
-    same : (k - 1,) bool array
-        Whether ``order[i]`` and ``order[i + 1]`` have the same corners.
+    first, second : (pairs,) int arrays
+        Rows of `polygons`.
 
     Raises
     ------
     ValueError
         If three have the same corners.
+
+    Examples
+    --------
+    >>> matched_pairs(np.array([[4, 7, 9], [1, 2, 3], [9, 4, 7]]))
+    (array([0]), array([2]))
     """
-    corners = np.sort(polygons, axis=1)
-    order = np.lexsort(corners.T)
-    same = (corners[order][1:] == corners[order][:-1]).all(axis=1)
+    corners = np.sort(polygons, axis=1).T
+    order = np.lexsort(corners)
+    sorted_corners = corners[:, order]
+    same = (sorted_corners[:, 1:] == sorted_corners[:, :-1]).all(axis=0)
     crowded = int((same[1:] & same[:-1]).sum())
     if crowded:
         raise ValueError(f"{crowded} faces belong to more than two cells")
-    return order, same
+    return order[:-1][same], order[1:][same]
 
 
 def rows_of(polygons: Ints, among: Ints) -> Ints:
@@ -125,14 +136,19 @@ def rows_of(polygons: Ints, among: Ints) -> Ints:
     Parameters
     ----------
     polygons, among : (k, width) and (m, width) int arrays
-        Filled up with -1; `among` has no polygon twice.
+        Filled up with -1; neither has a polygon twice.
 
     Returns
     -------
     (k,) int array
         Row of `among`, -1 where there is none.
+
+    Examples
+    --------
+    >>> rows_of(np.array([[3, 1, 2], [1, 2, 4]]), np.array([[7, 8, 9], [1, 2, 3]]))
+    array([ 1, -1])
     """
-    both = np.sort(np.concatenate([among, polygons]), axis=1)
-    _, index, inverse = np.unique(both, axis=0, return_index=True, return_inverse=True)
-    found = index[inverse.ravel()[len(among) :]]
-    return np.where(found < len(among), found, -1)
+    first, second = matched_pairs(np.concatenate([among, polygons]))
+    rows = np.full(len(polygons), -1)
+    rows[second - len(among)] = first
+    return rows

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pipeline.geometry.cells import cell_faces, matched_pairs, rows_of
 from pipeline.geometry.tets import FACES
 from pipeline.geometry.triangles import Floats, Ints
 
@@ -62,38 +63,12 @@ def tet_faces(tets: Ints) -> TetFaces:
     """
     triangles = tets[:, FACES].reshape(-1, 3)
     cell = np.repeat(np.arange(len(tets)), 4)
-    by_key, same = _matches(triangles)
-    first = by_key[:-1][same]
-    second = by_key[1:][same]
+    first, second = matched_pairs(triangles)
     order = _narrow_band(cell[first], cell[second], len(tets))
     new = np.empty(len(tets), np.int64)
     new[order] = np.arange(len(tets))
-    number = new[cell]
-
-    swap = number[first] > number[second]
-    ours, theirs = np.where(swap, second, first), np.where(swap, first, second)
-    sort = np.argsort(number[ours] * len(tets) + number[theirs], kind="stable")
-    ours, theirs = ours[sort], theirs[sort]
-
-    single = np.ones(len(triangles), bool)
-    single[first] = single[second] = False
-    outside = np.flatnonzero(single)
-    outside = outside[np.argsort(number[outside], kind="stable")]
-    faces = np.concatenate([ours, outside])
-    return TetFaces(triangles[faces], number[faces], number[theirs], order)
-
-
-def _matches(triangles: Ints) -> tuple[Ints, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]:
-    # equal triangles stand next to each other in the returned order; `same[k]` says that k and k + 1 are equal
-    low, mid, high = np.sort(triangles, axis=1).T
-    span = int(triangles.max(initial=0)) + 1
-    pair = low * span + mid
-    by_key = np.lexsort((high, pair))
-    same = (pair[by_key][1:] == pair[by_key][:-1]) & (high[by_key][1:] == high[by_key][:-1])
-    crowded = int((same[1:] & same[:-1]).sum())
-    if crowded:
-        raise ValueError(f"{crowded} faces belong to more than two tetrahedra")
-    return by_key, same
+    found = cell_faces(triangles, new[cell], (first, second))
+    return TetFaces(found.polygons, found.owner, found.neighbour, order)
 
 
 def _narrow_band(first: Ints, second: Ints, cells: int) -> Ints:
@@ -127,15 +102,12 @@ def patch_of_faces(triangles: Ints, named: Ints, patch: Ints) -> Ints:
     ValueError
         If the two lists do not hold the same triangles.
     """
-    mine, given = np.sort(triangles, axis=1), np.sort(named, axis=1)
-    sort_mine, sort_given = np.lexsort(mine.T), np.lexsort(given.T)
-    if mine.shape != given.shape or not (mine[sort_mine] == given[sort_given]).all():
+    row = rows_of(triangles, named)
+    if len(triangles) != len(named) or (row < 0).any():
         raise ValueError(
-            f"the {len(given)} faces that name a patch are not the {len(mine)} faces of one tetrahedron only"
+            f"the {len(named)} faces that name a patch are not the {len(triangles)} faces of one tetrahedron only"
         )
-    result = np.empty(len(mine), np.int64)
-    result[sort_mine] = patch[sort_given]
-    return result
+    return patch[row]
 
 
 def compacted(points: Floats, corners: Ints) -> tuple[Floats, Ints]:

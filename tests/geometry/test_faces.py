@@ -72,7 +72,7 @@ def test_the_renumbered_cells_are_the_tetrahedra() -> None:
 
 
 def test_three_tetrahedra_on_one_face_are_refused() -> None:
-    with pytest.raises(ValueError, match="1 faces belong to more than two"):
+    with pytest.raises(ValueError, match="1 faces belong to more than two cells"):
         tet_faces(np.array([[0, 1, 2, 3], [0, 1, 2, 4], [0, 1, 2, 5]]))
 
 

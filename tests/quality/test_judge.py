@@ -5,6 +5,7 @@ import pytest
 
 from pipeline.data import FaceMesh, Patch, TetMesh
 from pipeline.geometry.box import Box
+from pipeline.geometry.cells import cell_faces, polygons_of
 from pipeline.quality import QualitySettings, cell_fields, judge, measure
 from tests.sample_meshes import boundary_of, duct
 
@@ -83,13 +84,34 @@ def test_a_face_above_the_limit_warns_and_is_counted_and_placed() -> None:
     assert any("internal faces above 30 degree" in reason for reason in report.reasons)
 
 
-def test_only_faces_between_70_and_90_degrees_are_a_warning() -> None:
-    # a slant makes the bricks non-orthogonal and nothing else but under-determined, which a tiny limit forgives
-    slanted = bricks([1.0, 1.0], math.tan(math.radians(75)))
-    report = judge(slanted)
-    assert report.metrics["non_orthogonality"].over_limit == 1
+def slanted_cubes(angle: float, n: int = 3) -> FaceMesh:
+    """Stack n x n x n unit cubes, layer upon layer shifted so that the lines between their centers lean by `angle`."""
+    grid = np.stack(np.meshgrid(*(np.arange(n + 1),) * 3, indexing="ij"), axis=-1).astype(float).reshape(-1, 3)
+    low = np.stack(np.meshgrid(*(np.arange(n),) * 3, indexing="ij"), axis=-1).reshape(-1, 1, 3)
+    around = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
+    cubes = np.ravel_multi_index(tuple(np.moveaxis(low + around, -1, 0)), (n + 1,) * 3)
+    found = cell_faces(polygons_of("hexahedron", cubes), np.repeat(np.arange(n**3), 6))
+    points = grid + math.tan(math.radians(angle)) * grid[:, 2:] * np.array([1.0, 0.0, 0.0])
+    corners, internal = found.polygons.ravel(), len(found.neighbour)
+    patches = (Patch("all", internal, len(found.owner) - internal),)
+    return FaceMesh(points, corners, np.arange(0, len(corners) + 1, 4), found.owner, found.neighbour, n**3, patches)
+
+
+@pytest.mark.parametrize(("angle", "verdict"), [(0.0, "pass"), (69.0, "pass"), (71.0, "warn"), (75.0, "warn")])
+def test_only_faces_between_70_and_90_degrees_are_a_warning(angle: float, verdict: str) -> None:
+    report = judge(slanted_cubes(angle))
+    metric = report.metrics["non_orthogonality"]
+    assert metric.max == pytest.approx(angle, abs=1e-5)
+    # the lines between 3 layers lean off their 2 x 9 faces, and the 2 x 9 faces across x lean off their lines
+    assert metric.over_limit == {"pass": 0, "warn": 2 * 9 + 2 * 9}[verdict]
+    assert report.verdict == verdict
+    assert report.passed is (verdict == "pass")
+
+
+def test_a_stricter_limit_of_the_user_counts_and_its_breach_fails() -> None:
+    report = judge(slanted_cubes(0.0), QualitySettings(face_weight=0.6))
+    assert report.metrics["face_weight"].over_limit == 54
     assert report.verdict == "fail"
-    assert [reason.split(":")[0] for reason in report.reasons] == ["determinant", "non orthogonality"]
 
 
 def test_a_folded_cell_of_a_micrometer_does_not_slip_through() -> None:
