@@ -112,7 +112,7 @@ def near_pairs(start: Floats, end: Floats, reach: Floats, body: Ints, active: in
 def _cube(start: Floats, end: Floats, reach: Floats, extent: Floats) -> float:
     """Edge of the grid's cubes: as long as a segment where these are short, or a few reaches."""
     lengths = np.linalg.norm(end - start, axis=1)
-    size = max(2.0 * float(reach.mean()), 0.5 * float(np.median(lengths)))
+    size = max(2.0 * float(reach.mean()), float(np.median(lengths)))
     # no more than about eight cubes per segment
     volume = float(np.prod(np.maximum(extent, size)))
     return float(max(size, (volume / (8.0 * len(start) + 64.0)) ** (1.0 / 3.0)))

@@ -18,7 +18,7 @@ from pipeline.units import parse
 _COLUMNS = ("fiber", "x", "y", "z", "radius")
 _HEADER = re.compile(r"\s*(?P<name>\w+)\s*(?:\[\s*(?P<unit>[^\]]+?)\s*\])?\s*")
 _NOTE = re.compile(r"#\s*(?P<key>plan|thickness|periodic)\s*:\s*(?P<value>.*?)\s*")
-_MICRON = 1e-6
+_PER_METER = 1e6
 
 
 @dataclass
@@ -51,7 +51,7 @@ def write_fibers(mat: Mat, path: Path) -> None:
     path : Path
         `read_fibers` gives the same mat back, to the rounding of the change of unit.
     """
-    x, y, z = (size / _MICRON for size in mat.slab.size)
+    x, y, z = (size * _PER_METER for size in mat.slab.size)
     lines = [
         f"# {mat.origin}",
         f"# plan: {x!r} um x {y!r} um",
@@ -59,9 +59,9 @@ def write_fibers(mat: Mat, path: Path) -> None:
         f"# periodic: {'yes' if mat.periodic else 'no'}",
         ",".join(["fiber", *(f"{name} [um]" for name in _COLUMNS[1:])]),
     ]
-    nodes = (mat.nodes - mat.slab.lower) / _MICRON
+    nodes = (mat.nodes - mat.slab.lower) * _PER_METER
     fiber = np.repeat(np.arange(mat.fibers), np.diff(mat.first))
-    radius = (mat.radius / _MICRON)[fiber]
+    radius = (mat.radius * _PER_METER)[fiber]
     for k, (px, py, pz), r in zip(fiber.tolist(), nodes.tolist(), radius.tolist(), strict=True):
         lines.append(f"{k},{px!r},{py!r},{pz!r},{r!r}")
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
@@ -124,13 +124,13 @@ def read_fibers(path: Path, side: float | None = None, periodic: bool | None = N
     notes, fibers = _Notes(), _Fibers()
     rows = _rows(text, notes, path)
     number, header = next(rows, (1, []))
-    columns, factors = _read_header(header, path, number)
+    columns, per_meter = _read_header(header, path, number)
     for number, row in rows:
         if len(row) != len(header):
             raise _wrong(
                 path, number, header[min(len(row), len(header) - 1)], f"{len(row)} values for {len(header)} columns"
             )
-        _add(fibers, [row[k] for k in columns], factors, [header[k] for k in columns], path, number)
+        _add(fibers, [row[k] for k in columns], per_meter, [header[k] for k in columns], path, number)
     _close(fibers, path)
     if not fibers.names:
         raise _wrong(path, number, header[columns[0]], "no fiber follows the header")
@@ -166,9 +166,9 @@ def _read_note(key: str, value: str, notes: _Notes, path: Path, number: int) -> 
 
 
 def _read_header(header: list[str], path: Path, number: int) -> tuple[list[int], list[float]]:
-    """Find the place of each column, and the factor that makes it SI."""
+    """Find the place of each column, and how many of its units make a meter."""
     places: dict[str, int] = {}
-    factors: dict[str, float] = {}
+    per_meter: dict[str, float] = {}
     for place, text in enumerate(header):
         match = _HEADER.fullmatch(text)
         name = match["name"] if match is not None else text
@@ -179,21 +179,23 @@ def _read_header(header: list[str], path: Path, number: int) -> tuple[list[int],
         places[name] = place
         if name != "fiber":
             try:
-                factors[name] = parse(f"1 {match['unit'] or ''}", "m")
+                unit = parse(f"1 {match['unit'] or ''}", "m")
             except ValueError:
                 raise _wrong(path, number, text, f"write the column's unit as {name} [um]") from None
+            # 500 / 1e9 is the float 5e-7, 500 * 1e-9 is not
+            per_meter[name] = float(f"{1.0 / unit:.15g}")
     missing = [name for name in _COLUMNS if name not in places]
     if missing:
         raise _wrong(path, number, missing[0], "missing from the header, which names fiber, x, y, z and radius")
-    return [places[name] for name in _COLUMNS], [factors[name] for name in _COLUMNS[1:]]
+    return [places[name] for name in _COLUMNS], [per_meter[name] for name in _COLUMNS[1:]]
 
 
-def _add(fibers: _Fibers, row: list[str], factors: list[float], header: list[str], path: Path, number: int) -> None:
+def _add(fibers: _Fibers, row: list[str], per_meter: list[float], header: list[str], path: Path, number: int) -> None:
     """Add one point, to the last fiber or to a new one."""
     values = []
-    for text, factor, column in zip(row[1:], factors, header[1:], strict=True):
+    for text, units, column in zip(row[1:], per_meter, header[1:], strict=True):
         try:
-            value = float(text) * factor
+            value = float(text) / units
         except ValueError:
             raise _wrong(path, number, column, f"{text!r} is not a number") from None
         if not np.isfinite(value):
@@ -220,9 +222,7 @@ def _add(fibers: _Fibers, row: list[str], factors: list[float], header: list[str
 
 def _close(fibers: _Fibers, path: Path) -> None:
     if fibers.names and len(fibers.nodes) - fibers.first[-1] < 2:
-        raise _wrong(
-            path, fibers.lines[-1], "fiber", f"fiber {fibers.names[-1]} has one point; a fiber has two or more"
-        )
+        raise _wrong(path, fibers.lines[-1], "fiber", f"fiber {fibers.names[-1]} has only one point")
 
 
 def _mat(fibers: _Fibers, plan: tuple[float, float] | None, thickness: float | None, periodic: bool, path: Path) -> Mat:
@@ -242,7 +242,7 @@ def _mat(fibers: _Fibers, plan: tuple[float, float] | None, thickness: float | N
             raise CaseError(f"{path}: the slab has no extent along {name}; state # plan: and # thickness:")
         outside = np.flatnonzero((nodes[:, axis] < 0) | (nodes[:, axis] > size[axis]))
         if len(outside) and (name == "z" or not periodic):
-            value = f"{nodes[outside[0], axis] / _MICRON:g} um lies outside 0 to {size[axis] / _MICRON:g} um"
+            value = f"{nodes[outside[0], axis] * _PER_METER:g} um lies outside 0 to {size[axis] * _PER_METER:g} um"
             more = f", and so do {len(outside) - 1} more points" if len(outside) > 1 else ""
             raise _wrong(path, fibers.lines[outside[0]], name, value + more)
     return Mat(

@@ -92,42 +92,42 @@ def _beyond(mat: Mat) -> Floats:
 def _raise(
     begin: Floats, end: Floats, radius: Floats, beyond: Floats, cell: Floats, periodic: bool, tops: Floats
 ) -> None:
-    """Raise the heights in `tops` to the surfaces of the segments, cut into pieces about as long as wide."""
-    low, high = np.empty(2, np.int64), np.empty(2, np.int64)
+    """Raise the heights in `tops` to the surfaces of the segments, cell by cell across each."""
+    at = np.empty(2, np.int64)
     for k in range(len(begin)):
         r = radius[k]
-        along_x, along_y = end[k, 0] - begin[k, 0], end[k, 1] - begin[k, 1]
-        plan = np.sqrt(along_x * along_x + along_y * along_y)
+        plan = np.sqrt((end[k, 0] - begin[k, 0]) ** 2 + (end[k, 1] - begin[k, 1]) ** 2)
         if plan == 0.0:
             continue
-        along_x, along_y = along_x / plan, along_y / plan
+        # walk along the axis that the segment follows more closely, and at each step across it
+        major = 0 if abs(end[k, 0] - begin[k, 0]) >= abs(end[k, 1] - begin[k, 1]) else 1
+        minor = 1 - major
+        run, drift = (end[k, major] - begin[k, major]) / plan, (end[k, minor] - begin[k, minor]) / plan
         rise = (end[k, 2] - begin[k, 2]) / plan
         bulge = np.sqrt(1.0 + rise * rise)
         first, last = -beyond[k, 0], plan + beyond[k, 1]
-        pieces = int((last - first) / (4.0 * r)) + 1
-        for piece in range(pieces):
-            t0 = first + (last - first) * piece / pieces
-            t1 = first + (last - first) * (piece + 1) / pieces
-            for axis in range(2):
-                a = begin[k, axis] + t0 * (along_x if axis == 0 else along_y)
-                b = begin[k, axis] + t1 * (along_x if axis == 0 else along_y)
-                low[axis] = int(np.floor((min(a, b) - r) / cell[axis]))
-                high[axis] = int(np.floor((max(a, b) + r) / cell[axis]))
-                if not periodic:
-                    low[axis], high[axis] = max(low[axis], 0), min(high[axis], tops.shape[axis] - 1)
-            for i in range(low[0], high[0] + 1):
-                for j in range(low[1], high[1] + 1):
-                    dx, dy = (i + 0.5) * cell[0] - begin[k, 0], (j + 0.5) * cell[1] - begin[k, 1]
-                    t = dx * along_x + dy * along_y
-                    rho = dy * along_x - dx * along_y
-                    if t < t0 or t > t1 or rho * rho >= r * r:
+        low = min(begin[k, major] + first * run, begin[k, major] + last * run) - r
+        high = max(begin[k, major] + first * run, begin[k, major] + last * run) + r
+        for i in range(int(np.floor(low / cell[major])), int(np.floor(high / cell[major])) + 1):
+            if not periodic and (i < 0 or i >= tops.shape[major]):
+                continue
+            along = (i + 0.5) * cell[major] - begin[k, major]
+            middle, half = begin[k, minor] + along * drift / run, r / abs(run)
+            j_low, j_high = int(np.floor((middle - half) / cell[minor])), int(np.floor((middle + half) / cell[minor]))
+            for j in range(j_low, j_high + 1):
+                if not periodic and (j < 0 or j >= tops.shape[minor]):
+                    continue
+                across = (j + 0.5) * cell[minor] - begin[k, minor]
+                t = along * run + across * drift
+                rho = across * run - along * drift
+                if t < first or t > last or rho * rho >= r * r:
+                    continue
+                over = min(t, 0.0) + max(t - plan, 0.0)
+                top = begin[k, 2] + rise * t + bulge * np.sqrt(r * r - rho * rho)
+                # beyond a bend the fiber is a ball
+                if (t < 0.0 and beyond[k, 0] == r) or (t > plan and beyond[k, 1] == r):
+                    if rho * rho + over * over >= r * r:
                         continue
-                    over = min(t, 0.0) + max(t - plan, 0.0)
-                    top = begin[k, 2] + rise * t + bulge * np.sqrt(r * r - rho * rho)
-                    # beyond a bend the fiber is a ball
-                    if (t < 0.0 and beyond[k, 0] == r) or (t > plan and beyond[k, 1] == r):
-                        if rho * rho + over * over >= r * r:
-                            continue
-                        top = begin[k, 2] + rise * (t - over) + np.sqrt(r * r - rho * rho - over * over)
-                    u, v = i % tops.shape[0], j % tops.shape[1]
-                    tops[u, v] = max(tops[u, v], top)
+                    top = begin[k, 2] + rise * (t - over) + np.sqrt(r * r - rho * rho - over * over)
+                at[major], at[minor] = i % tops.shape[major], j % tops.shape[minor]
+                tops[at[0], at[1]] = max(tops[at[0], at[1]], top)

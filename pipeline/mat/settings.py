@@ -267,10 +267,11 @@ class Stop(_Settings):
         default=None, description="Predicted share of particles held back, at `particle_diameter`."
     )
     model: str | None = Field(
-        default=None, description="Pressure-drop model that predicts `pressure_drop` (davies unless given)."
+        default=None,
+        description="Pressure-drop model that predicts `pressure_drop` (flow.pressure_model unless given).",
     )
     particle_diameter: Length | None = Field(
-        default=None, description="Particle size at which `efficiency` is meant (300 nm unless given)."
+        default=None, description="Particle size at which `efficiency` is meant (flow.particle_diameter unless given)."
     )
 
     @model_validator(mode="after")

@@ -1,0 +1,150 @@
+"""Measures of mats whose answers are known in closed form."""
+
+import dataclasses
+import json
+import math
+
+import numpy as np
+import pytest
+
+from pipeline.data import Mat
+from pipeline.geometry.box import Box
+from pipeline.mat import ArraySettings, LayeredSettings, Stop, generate, measure
+from pipeline.mat.layers import solidity_profile
+from pipeline.mat.relief import relief
+from pipeline.mat.settings import Constant
+
+
+def mat_of(nodes: list[list[float]], radius: float, slab: Box, periodic: bool = False) -> Mat:
+    """Fibers of two nodes each."""
+    fibers = len(nodes) // 2
+    return Mat(np.array(nodes), 2 * np.arange(fibers + 1), np.full(fibers, radius), slab, -1, "test", periodic)
+
+
+UNIT = Box((0, 0, 0), (10, 10, 10))
+ONE = [[0.0, 5.0, 5.0], [10.0, 5.0, 5.0]]
+
+
+def test_one_straight_fiber_has_its_closed_measures() -> None:
+    m = measure(mat_of(ONE, 1.0, UNIT))
+    assert (m.fibers, m.segments, m.thickness, m.total_length) == (1, 1, 10, 10)
+    assert m.coverage == pytest.approx(0.2)
+    assert m.solidity == pytest.approx(math.pi * 10 / 1000)
+    # 40 rows of cells to the radius 1
+    assert m.covered_fraction == pytest.approx(0.2)
+    assert m.contacts_per_fiber == 0
+    assert np.array(m.orientation).tolist() == [[1, 0, 0], [0, 0, 0], [0, 0, 0]]
+    assert (m.diameters.mean, m.diameters.std, m.diameters.skewness) == (2, 0, 0)
+
+
+def test_what_overlaps_in_plan_covers_once() -> None:
+    # two crossed fibers, 0.2 each, share 0.04
+    m = measure(mat_of([*ONE, [5.0, 0.0, 2.0], [5.0, 10.0, 2.0]], 1.0, UNIT))
+    assert m.coverage == pytest.approx(0.4)
+    assert m.covered_fraction == pytest.approx(0.36)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 0.7, 1.2])
+def test_an_oblique_fiber_covers_its_strip_up_to_the_sides(angle: float) -> None:
+    # a line through the middle, cut flush at the sides: what the oblique ends lack on one corner they have on the other
+    reach = 5 / max(math.cos(angle), math.sin(angle))
+    dx, dy = reach * math.cos(angle), reach * math.sin(angle)
+    nodes = [[5 - dx, 5 - dy, 5.0], [5 + dx, 5 + dy, 5.0]]
+    on_side = 0 if math.cos(angle) >= math.sin(angle) else 1
+    nodes[0][on_side], nodes[1][on_side] = 0.0, 10.0
+    covered = measure(mat_of(nodes, 0.5, UNIT)).covered_fraction
+    assert covered == pytest.approx(2 * reach * 1.0 / 100, abs=2e-3)
+
+
+def test_the_relief_is_the_surface_of_the_fibers() -> None:
+    mat = mat_of(ONE, 1.0, UNIT)
+    tops = relief(mat)
+    y = (np.arange(tops.shape[1]) + 0.5) * 10 / tops.shape[1] - 5
+    expected = np.where(np.abs(y) < 1, 5 + np.sqrt(np.maximum(1 - y**2, 0)), np.nan)
+    assert tops[3] == pytest.approx(expected, nan_ok=True)
+
+
+def test_a_periodic_fiber_covers_on_both_sides() -> None:
+    across = mat_of([[8.0, 5.0, 5.0], [13.0, 5.0, 5.0]], 1.0, UNIT, periodic=True)
+    tops = np.isfinite(relief(across))
+    assert tops.mean() == pytest.approx(0.1)
+    assert tops[: len(tops) * 3 // 10].mean() == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize("rise", [0.0, 1e-6, 0.5, 4.0, 7.9])
+def test_the_profile_of_an_inclined_fiber_is_that_of_its_discs(rise: float) -> None:
+    # against a fine sum over the discs along the axis, each cut by every layer's sides
+    low, high = 5 - rise / 2, 5 + rise / 2
+    mat = mat_of([[0, 5, low], [10, 5, high]], 1.0, UNIT)
+    found = solidity_profile(mat, np.ones(1), 20)
+    length = math.hypot(10, rise)
+    heights = low + (high - low) * (np.arange(20_000) + 0.5) / 20_000
+    edges = np.linspace(0, 10, 21)
+    u = np.clip((edges[:, None] - heights) / (10 / length), -1, 1)
+    below = (0.5 + (u * np.sqrt(1 - u**2) + np.arcsin(u)) / math.pi).mean(axis=1)
+    assert found == pytest.approx(np.diff(below) * math.pi * length / (100 * 0.5), abs=1e-7)
+
+
+def test_the_profile_of_a_layered_mat_sums_to_its_solidity() -> None:
+    m = measure(
+        generate(
+            LayeredSettings(
+                side=5e-5, fiber_diameter=Constant(diameter=1.4e-6), relaxation_slope=0.15, stop=Stop(coverage=3)
+            )
+        )
+    )
+    assert np.mean(m.profile.solidity) == pytest.approx(m.solidity, rel=1e-12)
+    assert m.profile.z[-1] == pytest.approx(m.thickness * 0.99)
+
+
+def test_figure_10_has_the_robust_thickness_of_the_method() -> None:
+    # 0.78 of the thickness; the choice of the tiles moves it by 0.02
+    asked = {"side": 1e-4, "fiber_diameter": 1.4e-6, "relaxation_slope": 0.15, "stop": {"coverage": 4}}
+    mats = [measure(generate(LayeredSettings.model_validate(asked | {"seed": seed}))) for seed in range(8)]
+    assert np.mean([m.robust_thickness / m.thickness for m in mats]) == pytest.approx(0.78, abs=0.03)
+    # of fibers laid at random a coverage of 4 leaves about exp(-4) bare
+    assert np.mean([m.covered_fraction for m in mats]) == pytest.approx(1 - math.exp(-4), abs=0.01)
+
+
+def test_a_fiber_counts_the_fibers_that_it_touches() -> None:
+    # a ladder: two rails touch each of three rungs, that makes 6 contacts and 12 ends of them among 5 fibers
+    rails = [[0.0, 3.0, 1.0], [10.0, 3.0, 1.0], [0.0, 7.0, 1.0], [10.0, 7.0, 1.0]]
+    rungs = [[x, y, 3.0] for x in (2.0, 5.0, 8.0) for y in (0.0, 10.0)]
+    assert measure(mat_of([*rails, *rungs], 1.0, UNIT)).contacts_per_fiber == pytest.approx(12 / 5)
+
+
+def test_isotropic_fibers_have_an_isotropic_tensor() -> None:
+    asked = {
+        "side": 1e-4,
+        "fiber_diameter": 1e-6,
+        "relaxation_slope": 0.0,
+        "orientation": "isotropic",
+        "stop": {"count": 2000},
+    }
+    tensor = np.array(measure(generate(LayeredSettings.model_validate(asked))).orientation)
+    # cos^2 spreads by sqrt(1/8) around 1/2, over 2000 fibers of unequal length
+    assert tensor == pytest.approx(np.diag([0.5, 0.5, 0.0]), abs=0.04)
+    assert np.trace(tensor) == pytest.approx(1.0)
+
+
+def test_moments_are_those_of_the_fibers_drawn() -> None:
+    nodes = np.array([[0, 2, 5], [10, 2, 5], [0, 7, 5], [5, 7, 5]], dtype=float)
+    m = measure(Mat(nodes, np.array([0, 2, 4]), np.array([0.5, 1.0]), UNIT, -1, "test")).diameters
+    assert (m.mean, m.std, m.min, m.max, m.skewness) == (1.5, 0.5, 1, 2, 0)
+    assert m.length_weighted == pytest.approx((1 * 10 + 2 * 5) / 15)
+    assert m.surface_weighted == pytest.approx((1 * 10 + 4 * 5) / (1 * 10 + 2 * 5))
+
+
+def test_half_of_a_fiber_in_a_side_plane_counts() -> None:
+    array = generate(ArraySettings(arrangement="hexagonal", solidity=0.2, fiber_diameter=1e-6, rows=1))
+    m = measure(array)
+    assert m.fibers == 2
+    assert m.solidity == pytest.approx(0.2)
+    assert m.coverage == pytest.approx(1e-6 / array.slab.size[0])
+    # to half a cell at either side, of 18
+    assert m.covered_fraction == pytest.approx(m.coverage, abs=1 / 18)
+
+
+def test_the_measures_become_json() -> None:
+    text = json.dumps(dataclasses.asdict(measure(mat_of(ONE, 1.0, UNIT))), allow_nan=False)
+    assert json.loads(text)["diameters"]["mean"] == 2
