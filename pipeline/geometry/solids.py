@@ -86,6 +86,33 @@ def unite_within(bodies: Sequence[Body], limits: Box) -> tuple[Floats, Ints, Int
     return points, triangles, np.where(source == first + len(bodies), -1 - face, source - first)
 
 
+def volume_within(bodies: Sequence[Body], limits: Box) -> float:
+    """Volume of the union of closed bodies within a box.
+
+    Parameters
+    ----------
+    bodies : sequence of (points, triangles)
+        As for `unite_within`.
+    limits : Box [m]
+
+    Returns
+    -------
+    float [m3]
+
+    Raises
+    ------
+    StageError
+        If a body is not a closed surface, or the union fails.
+    """
+    from manifold3d import Manifold, OpType
+
+    scale = _scale(limits)
+    solids = [_solid(points, triangles, scale, "a body", 0, np.arange(len(triangles))) for points, triangles in bodies]
+    cutter = _solid(*box_body(limits), scale, "the box", 0, _PLANE)
+    cut = _sound(Manifold.batch_boolean(solids, OpType.Add) ^ cutter, "the cut of a body at the box")
+    return float(cut.volume()) / scale**3
+
+
 def box_minus(box: Box, points: Floats, triangles: Ints) -> tuple[Floats, Ints, Ints]:
     """Cut closed bodies out of a box.
 

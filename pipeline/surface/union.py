@@ -42,7 +42,16 @@ def unite(mat: Mat, settings: SurfaceSettings, progress: Progress = silent) -> S
     if len(triangles) == 0:
         raise StageError(f"none of the {mat.fibers} fibers lies within the plan {mat.slab}; check their coordinates")
     source = np.where(body >= 0, fiber[np.maximum(body, 0)], -1)
-    return Surface(points, triangles, spread(triangles, source), mat.radius, mat.slab)
+    fiber = spread(triangles, source)
+    if settings.smallest_edge > 0:
+        # numba takes half a second to load
+        from pipeline.surface.tidy import tidied
+
+        progress(f"clearing splinters from {len(triangles)} triangles")
+        points, triangles, fiber = tidied(
+            points, triangles, fiber, mat.radius, _sides(points, mat.slab), settings.smallest_edge, mat.periodic
+        )
+    return Surface(points, triangles, fiber, mat.radius, mat.slab)
 
 
 def fiber_bodies(mat: Mat, settings: SurfaceSettings, progress: Progress = silent) -> tuple[list[Body], Ints]:
@@ -94,31 +103,42 @@ def run_through(nodes: Floats, radius: float, slab: Box, settings: SurfaceSettin
     Returns
     -------
     nodes : (n, 3) array [m]
-        With the first and last node moved outward where they lie on a side.
+        The first and last node moved outward, or a node added beyond them, where they lie on a side.
     ends : Ends
         How each end is closed.
     """
-    nodes = nodes.copy()
-    how = []
     reach = polygon_radius(radius, settings.sides)
+    low, high = slab.lower[2] + radius, slab.upper[2] - radius
+    how = []
     for end, inner in ((0, 1), (-1, -2)):
         outward = nodes[end] - nodes[inner]
         outward /= np.linalg.norm(outward)
-        lengths = []
-        on_side = False
-        for axis in (0, 1):
-            for side, sign in ((slab.lower[axis], -1.0), (slab.upper[axis], 1.0)):
-                toward = sign * outward[axis]
-                gap = sign * (side - nodes[end, axis])
-                if toward <= 1e-9:
-                    continue
-                on_side |= gap <= _ON_FACE * radius
-                tilt = np.sqrt(max(0.0, 1.0 - toward**2))
-                lengths.append((gap + 1.05 * reach * tilt) / toward + 0.5 * radius)
+        on_side, length = _way_out(nodes[end], outward, radius, reach, slab)
         if on_side:
-            nodes[end] += max(min(lengths), 0.0) * outward
+            beyond = nodes[end] + length * outward
+            if low <= beyond[2] <= high:
+                nodes = np.concatenate([beyond[None], nodes[1:]] if end == 0 else [nodes[:-1], beyond[None]])
+            else:  # a steep fiber that grazes a side would dive out of the slab: it runs on level
+                beyond[2] = nodes[end, 2]
+                nodes = np.concatenate([beyond[None], nodes] if end == 0 else [nodes, beyond[None]])
         how.append("flat" if on_side else settings.caps)
     return nodes, Ends(*how)
+
+
+def _way_out(end: Floats, outward: Floats, radius: float, reach: float, slab: Box) -> tuple[bool, float]:
+    """Tell whether an end lies on a side, and how far on from it the cross-section has left through a side."""
+    lengths = [np.inf]
+    on_side = False
+    for axis in (0, 1):
+        for side, sign in ((slab.lower[axis], -1.0), (slab.upper[axis], 1.0)):
+            toward = sign * outward[axis]
+            gap = sign * (side - end[axis])
+            if toward <= 1e-9:
+                continue
+            on_side |= bool(gap <= _ON_FACE * radius)
+            tilt = np.sqrt(max(0.0, 1.0 - toward**2))
+            lengths.append((gap + 1.05 * reach * tilt) / toward + 0.5 * radius)
+    return on_side, max(float(min(lengths)), 0.0)
 
 
 def clipping_box(mat: Mat, bodies: list[Body]) -> Box:
@@ -141,6 +161,16 @@ def _images(points: Floats, mat: Mat) -> list[Floats]:
         last = np.floor((mat.slab.upper[axis] - points[:, axis].min()) / size)
         ranges.append(size * np.arange(first, last + 1))
     return [np.array([x, y, 0.0]) for x in ranges[0] for y in ranges[1]]
+
+
+def _sides(points: Floats, slab: Box) -> Ints:
+    """Give each point a bit per side of the plan that it lies on."""
+    places = [(axis, place) for axis in (0, 1) for place in (slab.lower[axis], slab.upper[axis])]
+    bits: Ints = sum(
+        ((points[:, axis] == place).astype(np.int64) << k for k, (axis, place) in enumerate(places)),
+        np.zeros(len(points), dtype=np.int64),
+    )
+    return bits
 
 
 def spread(triangles: Ints, label: Ints) -> Ints:

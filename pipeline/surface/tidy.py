@@ -1,0 +1,239 @@
+"""Take away the splinters that a union leaves where surfaces cross: collapse short edges, flip flat triangles.
+
+A mesher inserts every triangle it is given; those a thousand times longer than high cost it most.
+"""
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from pipeline.data import Floats, Ints
+from pipeline.geometry.crossings import bins, crosses_any
+
+Bools = npt.NDArray[np.bool_]
+Near = tuple[Floats, Ints, Ints, Ints, float]
+"""Triangles sorted into cubes, and the cubes' size: see `bins`."""
+
+_MOST_ROUNDS = 40
+_LEAST_COSINE = 0.5  # a triangle that turns by more than 60 degrees has folded over
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _stars(triangles: Ints, count: int) -> tuple[Ints, Ints]:
+    """Triangles at each point: point v has ``around[first[v]:first[v + 1]]``."""
+    first = np.zeros(count + 1, dtype=np.int64)
+    for t in range(len(triangles)):
+        for k in range(3):
+            first[triangles[t, k] + 1] += 1
+    first = np.cumsum(first)
+    place = first[:-1].copy()
+    around = np.empty(first[-1], dtype=np.int64)
+    for t in range(len(triangles)):
+        for k in range(3):
+            around[place[triangles[t, k]]] = t
+            place[triangles[t, k]] += 1
+    return first, around
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _normal(a: Floats, b: Floats, c: Floats) -> tuple[Floats, float, float]:
+    """Give the unit normal, the height over the longest side, and that side's length."""
+    normal = np.cross(b - a, c - a)
+    double_area = np.sqrt(normal @ normal)
+    longest = np.sqrt(max((b - a) @ (b - a), (c - b) @ (c - b), (a - c) @ (a - c)))
+    if double_area > 0:
+        normal = normal / double_area
+    return normal, double_area / longest if longest > 0 else 0.0, longest
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _may_collapse(
+    points: Floats, triangles: Ints, first: Ints, around: Ints, gone: int, kept: int, least: float, near: Near
+) -> bool:
+    """Whether moving point `gone` onto `kept` leaves a surface that neither folds nor touches itself."""
+    shared = 0
+    ring = set()
+    for k in range(first[gone], first[gone + 1]):
+        for j in range(3):
+            ring.add(triangles[around[k], j])
+    counted = {gone, kept}
+    for k in range(first[kept], first[kept + 1]):
+        for j in range(3):
+            other = triangles[around[k], j]
+            if other in ring and other not in counted:
+                counted.add(other)
+                shared += 1
+    if shared != 2 or first[gone + 1] - first[gone] < 4 or first[kept + 1] - first[kept] < 4:
+        return False
+    for k in range(first[gone], first[gone + 1]):
+        corner = triangles[around[k]]
+        if kept in (corner[0], corner[1], corner[2]):
+            continue
+        old, old_height, _ = _normal(points[corner[0]], points[corner[1]], points[corner[2]])
+        moved = np.where(corner == gone, kept, corner)
+        new, new_height, _ = _normal(points[moved[0]], points[moved[1]], points[moved[2]])
+        if new_height < min(least, old_height) or old @ new < _LEAST_COSINE:
+            return False
+    skip = np.array([gone])
+    for k in range(first[gone], first[gone + 1]):
+        corner = triangles[around[k]]
+        if kept in (corner[0], corner[1], corner[2]):
+            continue
+        moved = np.where(corner == gone, kept, corner)
+        if crosses_any(points, triangles, moved, skip, near[0], near[1], near[2], near[3], near[4]):
+            return False
+    return True
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _collapse(
+    points: Floats,
+    triangles: Ints,
+    pairs: Ints,
+    sides: Ints,
+    fixed: Bools,
+    crease: Ints,
+    least: Floats,
+    alive: Bools,
+    near: Near,
+) -> int:
+    """Collapse edges, none next to another one that has just gone; give how many."""
+    first, around = _stars(triangles, len(points))
+    locked = np.zeros(len(points), dtype=np.bool_)
+    count = 0
+    for e in range(len(pairs)):
+        for turn in range(2):
+            gone, kept = pairs[e, turn], pairs[e, 1 - turn]
+            # a point on a side or on the line where fibers meet stays on it
+            if fixed[gone] or sides[gone] & ~sides[kept] or crease[gone] > crease[kept]:
+                continue
+            if locked[gone] or locked[kept]:
+                continue
+            if not _may_collapse(points, triangles, first, around, gone, kept, least[gone], near):
+                continue
+            for k in range(first[gone], first[gone + 1]):
+                t = around[k]
+                for j in range(3):
+                    locked[triangles[t, j]] = True
+                if kept in (triangles[t, 0], triangles[t, 1], triangles[t, 2]):
+                    alive[t] = False
+                for j in range(3):
+                    if triangles[t, j] == gone:
+                        triangles[t, j] = kept
+            count += 1
+            break
+    return count
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _flip(points: Floats, triangles: Ints, label: Ints, sides: Ints, fixed: Bools, least: Floats, near: Near) -> int:
+    """Turn the longest side of triangles that have next to no height; give how many."""
+    first, around = _stars(triangles, len(points))
+    locked = np.zeros(len(points), dtype=np.bool_)
+    nothing = np.empty(0, dtype=np.int64)
+    count = 0
+    for t in range(len(triangles)):
+        corner = triangles[t].copy()
+        _, height, _ = _normal(points[corner[0]], points[corner[1]], points[corner[2]])
+        if height >= least[corner[0]] or locked[corner[0]] or locked[corner[1]] or locked[corner[2]]:
+            continue
+        length = np.empty(3)
+        for k in range(3):
+            edge = points[corner[(k + 1) % 3]] - points[corner[k]]
+            length[k] = edge @ edge
+        k = int(np.argmax(length))
+        a, b, c = corner[k], corner[(k + 1) % 3], corner[(k + 2) % 3]
+        other, d = -1, -1
+        for i in range(first[b], first[b + 1]):
+            for j in range(3):
+                if triangles[around[i], j] == b and triangles[around[i], (j + 1) % 3] == a:
+                    other, d = around[i], triangles[around[i], (j + 2) % 3]
+        if other < 0 or d == c or locked[d]:
+            continue
+        joined = False
+        for i in range(first[c], first[c + 1]):
+            if d in (triangles[around[i], 0], triangles[around[i], 1], triangles[around[i], 2]):
+                joined = True
+        flat = sides[a] & sides[b] & sides[d]
+        if joined or flat & ~sides[c] or (fixed[a] and fixed[b]):
+            continue
+        normal, other_height, _ = _normal(points[b], points[a], points[d])
+        one, one_height, _ = _normal(points[a], points[d], points[c])
+        two, two_height, _ = _normal(points[d], points[b], points[c])
+        if min(one_height, two_height) <= min(height, other_height):
+            continue
+        if one @ normal < _LEAST_COSINE or two @ normal < _LEAST_COSINE:
+            continue
+        left, right = np.array([a, d, c]), np.array([d, b, c])
+        if crosses_any(points, triangles, left, nothing, near[0], near[1], near[2], near[3], near[4]):
+            continue
+        if crosses_any(points, triangles, right, nothing, near[0], near[1], near[2], near[3], near[4]):
+            continue
+        triangles[t] = left
+        triangles[other] = right
+        label[t] = label[other]
+        for v in (a, b, c, d):
+            locked[v] = True
+        count += 1
+    return count
+
+
+def _near(points: Floats, triangles: Ints, pad: float) -> Near:
+    edge = float(np.median(np.linalg.norm(points[triangles[:, 0]] - points[triangles[:, 1]], axis=1)))
+    size = max(edge, float(np.ptp(points, axis=0).max()) / 200.0)
+    return (*bins(points, triangles, size, pad), size)
+
+
+def tidied(
+    points: Floats, triangles: Ints, fiber: Ints, radius: Floats, sides: Ints, tolerance: float, frozen_sides: bool
+) -> tuple[Floats, Ints, Ints]:
+    """Collapse edges shorter than the tolerance and flip triangles a tenth of it high.
+
+    Nothing is done that would fold the surface or make it cut through itself.
+
+    Parameters
+    ----------
+    points : (n, 3) array [m]
+    triangles : (m, 3) int array
+        A closed surface.
+    fiber : (m,) int array
+    radius : (fibers,) array [m]
+    sides : (n,) int array
+        Bit per side of the plan that a point lies on: it stays on all of them.
+    tolerance : float
+        In diameters of the thinnest fiber at a point; no point moves farther.
+    frozen_sides : bool
+        Keep the points on the sides where they are: the sides of a periodic mat must fit each other.
+
+    Returns
+    -------
+    points, triangles, fiber
+        The closed surface that is left.
+    """
+    triangles, fiber = triangles.copy(), fiber.copy()
+    fixed = (sides != 0) & frozen_sides
+    for _ in range(_MOST_ROUNDS):
+        thinnest, thickest = np.full(len(points), np.iinfo(np.int64).max), np.full(len(points), -1)
+        size = np.full(len(points), np.inf)
+        for k in range(3):
+            np.minimum.at(thinnest, triangles[:, k], fiber)
+            np.maximum.at(thickest, triangles[:, k], fiber)
+            np.minimum.at(size, triangles[:, k], 2.0 * radius[fiber])
+        crease = (thinnest != thickest).astype(np.int64)
+        short = tolerance * size
+        pairs = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+        pairs = pairs[pairs[:, 0] < pairs[:, 1]]
+        length = np.linalg.norm(points[pairs[:, 0]] - points[pairs[:, 1]], axis=1)
+        chosen = length < np.minimum(short[pairs[:, 0]], short[pairs[:, 1]])
+        order = np.argsort(length[chosen], kind="stable")
+        near = _near(points, triangles, float(short[np.isfinite(short)].max()))
+        alive = np.ones(len(triangles), dtype=np.bool_)
+        changed = _collapse(points, triangles, pairs[chosen][order], sides, fixed, crease, 0.1 * short, alive, near)
+        triangles, fiber = triangles[alive], fiber[alive]
+        if changed:
+            near = _near(points, triangles, 0.0)
+        changed += _flip(points, triangles, fiber, sides, fixed, 0.1 * short, near)
+        if changed == 0:
+            break
+    used, corner = np.unique(triangles, return_inverse=True)
+    return points[used], corner.reshape(triangles.shape), fiber
