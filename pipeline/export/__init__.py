@@ -1,6 +1,7 @@
 """Cases and meshes that solvers and viewers read."""
 
+from pipeline.export.openfoam import FiberSlip, fiber_radius
 from pipeline.export.read import read_mesh
 from pipeline.export.write import export
 
-__all__ = ["export", "read_mesh"]
+__all__ = ["FiberSlip", "export", "fiber_radius", "read_mesh"]

@@ -6,7 +6,7 @@ from pathlib import Path
 from pipeline.data import FaceMesh, Floats, Flow
 from pipeline.export.exchange import SUFFIXES, write_exchange
 from pipeline.export.fluent import write_fluent
-from pipeline.export.openfoam import write_openfoam
+from pipeline.export.openfoam import FiberSlip, write_openfoam
 from pipeline.export.settings import ExportSettings
 from pipeline.export.su2 import write_su2
 from pipeline.export.vtk import write_vtk
@@ -21,6 +21,7 @@ def export(
     sides: str,
     progress: Progress = silent,
     fields: Mapping[str, Floats] | None = None,
+    slip: FiberSlip | None = None,
 ) -> tuple[str, ...]:
     """Write the mesh in every format of `settings` into ``folder/<format>``.
 
@@ -36,6 +37,8 @@ def export(
     progress : Progress
     fields : mapping of name to (cells,) array, optional
         Shown on the cells by VTK.
+    slip : FiberSlip, optional
+        How far the air slips along the fibers; needed just where ``settings.fiber_wall`` is ``"slip"``.
 
     Returns
     -------
@@ -50,7 +53,7 @@ def export(
     for name in settings.formats:
         place = folder / name
         if name == "openfoam":
-            write_openfoam(mesh, place, flow, sides, settings, progress)
+            write_openfoam(mesh, place, flow, sides, settings, progress, slip)
         elif name == "vtk":
             write_vtk(mesh, place, fields or {}, progress)
         elif name == "fluent":

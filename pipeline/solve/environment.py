@@ -8,15 +8,17 @@ DEBIAN_HOME = Path("/usr/share/openfoam")
 INSTALL = "on Debian and Ubuntu: apt-get install openfoam; otherwise see openfoam.com, and source its bashrc"
 
 
-def openfoam_missing(cores: int = 1) -> str | None:
+def openfoam_missing(cores: int = 1, solver: str = "simpleFoam") -> str | None:
     """Say why OpenFOAM cannot run here, and what to do; None where it can.
 
     Parameters
     ----------
     cores : int
         Above 1, MPI and the tools that split a case are needed too.
+    solver : str
+        ``"foamRun"`` for a case of OpenFOAM.org's dialect.
     """
-    programs = ["simpleFoam"] if cores == 1 else ["simpleFoam", "decomposePar", "mpirun"]
+    programs = [solver] if cores == 1 else [solver, "decomposePar", "mpirun"]
     missing = [program for program in programs if shutil.which(program) is None]
     if not missing:
         return None

@@ -25,7 +25,6 @@ from pipeline.solve.environment import environment, openfoam_missing
 from pipeline.solve.settings import SolveSettings
 from pipeline.solve.settled import change
 
-LOG = "log.simpleFoam"
 _POLL = 0.3  # seconds between two looks at a run
 _SAVES = 100  # iterations between two states that a killed run continues from
 _PR_SET_PDEATHSIG = 1
@@ -89,19 +88,20 @@ def solve(
         If OpenFOAM is missing, cannot start, or the run diverges; with the end of its log.
     """
     settings = settings or SolveSettings()
-    missing = openfoam_missing(settings.cores)
+    program = _application(case)
+    missing = openfoam_missing(settings.cores, program)
     if missing:
         raise StageError(missing)
     began = time.monotonic()
     progress("solve: preparing the case")
     _prepare(case, work, settings)
     before = float((work / _SECONDS).read_text()) if (work / _SECONDS).exists() else 0.0
-    command = ["simpleFoam"]
+    command = [program]
     if settings.cores > 1:
-        command = ["mpirun", "-np", str(settings.cores), "simpleFoam", "-parallel"]
+        command = ["mpirun", "-np", str(settings.cores), program, "-parallel"]
     try:
-        with _running(command, work) as solver:
-            settled = _watch(solver, work, flow, settings, progress)
+        with _running(command, work, f"log.{program}") as solver:
+            settled = _watch(solver, work, flow, settings, progress, work / f"log.{program}")
     finally:
         seconds = before + time.monotonic() - began
         (work / _SECONDS).write_text(f"{seconds:.3f}")
@@ -126,6 +126,17 @@ def _prepare(case: Path, work: Path, settings: SolveSettings) -> None:
         endTime=settings.max_iterations,
         writeInterval=min(_SAVES, settings.max_iterations),
     )
+
+
+def _application(case: Path) -> str:
+    """Name of the solver that a case was written for."""
+    path = case / "system/controlDict"
+    if not path.is_file():
+        raise StageError(f"{case} is no OpenFOAM case: {path.relative_to(case)} is missing; run the export stage")
+    match = re.search(r"^\s*application\s+(\w+)\s*;", path.read_text(encoding="ascii"), re.MULTILINE)
+    if match is None:
+        raise StageError(f"{path} names no application; export the case again with --force export")
+    return match[1]
 
 
 def _digest(case: Path, cores: int) -> str:
@@ -163,9 +174,9 @@ def _end_with_parent() -> None:
 
 
 @contextlib.contextmanager
-def _running(command: list[str], work: Path) -> Iterator["subprocess.Popen[bytes]"]:
+def _running(command: list[str], work: Path, log_name: str) -> Iterator["subprocess.Popen[bytes]"]:
     """Run the solver in a process group of its own, which ends with the block whatever happens."""
-    with (work / LOG).open("ab") as log:
+    with (work / log_name).open("ab") as log:
         solver = subprocess.Popen(
             command,
             cwd=work,
@@ -190,7 +201,7 @@ def _running(command: list[str], work: Path) -> Iterator["subprocess.Popen[bytes
 
 
 def _watch(
-    solver: "subprocess.Popen[bytes]", work: Path, flow: Flow, settings: SolveSettings, progress: Progress
+    solver: "subprocess.Popen[bytes]", work: Path, flow: Flow, settings: SolveSettings, progress: Progress, log: Path
 ) -> bool:
     """Look at the run until it ends; ask it to stop once the pressure drop has settled or the time is over."""
     deadline = time.monotonic() + settings.time_limit
@@ -201,7 +212,7 @@ def _watch(
         if len(drops):
             last = change(drops[:, 1], settings.window)
             settled = settled or last < settings.tolerance
-            _tell(progress, work, drops, last, settings)
+            _tell(progress, log, drops, last, settings)
             if not math.isfinite(drops[-1, 1]):
                 break
         if code is not None:
@@ -212,11 +223,11 @@ def _watch(
     if solver.poll() != 0 or not len(drops) or not np.isfinite(drops[:, 1]).all():
         at = f"after {drops[-1, 0]:.0f} iterations" if len(drops) else "before its first iteration"
         raise StageError(
-            f"simpleFoam failed {at} (exit code {solver.poll()}); check the mesh's quality, refine tetmesh.edge, or "
-            f"look into {work / LOG}, which ends:\n{read_back.tail(work / LOG)}"
+            f"{log.suffix[1:]} failed {at} (exit code {solver.poll()}); check the mesh's quality, refine "
+            f"tetmesh.edge, or look into {log}, which ends:\n{read_back.tail(log)}"
         )
     # the solver may also find that nothing changes any more before the window is full
-    return settled or "SIMPLE solution converged" in read_back.tail(work / LOG, 40)
+    return settled or "SIMPLE solution converged" in read_back.tail(log, 40)
 
 
 def _pressure_drops(work: Path, flow: Flow) -> Floats:
@@ -226,8 +237,8 @@ def _pressure_drops(work: Path, flow: Flow) -> Floats:
     return np.column_stack([inlet[:both, 0], flow.density * (inlet[:both, 1] - outlet[:both, 1])])
 
 
-def _tell(progress: Progress, work: Path, drops: Floats, last: float, settings: SolveSettings) -> None:
-    found = read_back.residuals(read_back.tail(work / LOG, 60))
+def _tell(progress: Progress, log: Path, drops: Floats, last: float, settings: SolveSettings) -> None:
+    found = read_back.residuals(read_back.tail(log, 60))
     told = ", ".join(f"{name} {value:.1e}" for name, value in sorted(found.items()))
     # the change falls from 1 to the tolerance, in even steps on a logarithmic scale
     done = math.log(max(min(last, 1.0), settings.tolerance)) / math.log(settings.tolerance)

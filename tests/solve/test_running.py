@@ -138,6 +138,7 @@ def test_a_broken_case_is_an_error_that_names_the_cause(tmp_path: Path) -> None:
 def test_without_openfoam_the_reason_and_the_cure_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     assert "simpleFoam not found on the PATH; on Debian" in str(openfoam_missing())
+    case = bar_case(tmp_path / "case", cells=4)
     with pytest.raises(StageError, match="decomposePar and mpirun"):
-        solve(tmp_path, tmp_path / "work", AIR, BED, SolveSettings(cores=2))
+        solve(case, tmp_path / "work", AIR, BED, SolveSettings(cores=2))
     assert not (tmp_path / "work").exists()

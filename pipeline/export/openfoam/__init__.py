@@ -2,5 +2,6 @@
 
 from pipeline.export.openfoam.case import write_openfoam
 from pipeline.export.openfoam.read import read_openfoam
+from pipeline.export.openfoam.slip import FiberSlip, fiber_radius
 
-__all__ = ["read_openfoam", "write_openfoam"]
+__all__ = ["FiberSlip", "fiber_radius", "read_openfoam", "write_openfoam"]

@@ -5,7 +5,9 @@ from pathlib import Path
 from pipeline.data import FIBERS, INLET, OUTLET, SIDES, FaceMesh, Flow, Patch
 from pipeline.errors import StageError
 from pipeline.export.openfoam import dictionaries as foam
+from pipeline.export.openfoam.cyclic import with_matching_sides
 from pipeline.export.openfoam.poly_mesh import write_poly_mesh
+from pipeline.export.openfoam.slip import FiberSlip
 from pipeline.export.settings import ExportSettings
 from pipeline.progress import Progress, silent
 
@@ -17,6 +19,7 @@ def write_openfoam(
     sides: str = "symmetry",
     settings: ExportSettings | None = None,
     progress: Progress = silent,
+    slip: FiberSlip | None = None,
 ) -> None:
     """Write a case that `checkMesh`, `simpleFoam` and `./Allrun` take as it is.
 
@@ -27,33 +30,39 @@ def write_openfoam(
     folder : Path
         Made if it is not there.
     flow : Flow
-    sides : "symmetry" or "slip"
+    sides : "symmetry", "slip" or "cyclic"
         What the sides are to the solver.
     settings : ExportSettings
     progress : Progress
+    slip : FiberSlip, optional
+        How far the air slips along the fibers; needed just where ``settings.fiber_wall`` is ``"slip"``.
 
     Raises
     ------
     StageError
-        If a patch is missing, empty or unknown.
+        If a patch is missing, empty or unknown, or the sides are cyclic but do not fit each other.
     """
     settings = settings or ExportSettings()
+    if (slip is not None) is not (settings.fiber_wall == "slip"):
+        raise ValueError("a slip is given just where fiber_wall is slip")
     _refuse_odd_patches(mesh)
+    if sides == "cyclic":
+        mesh = with_matching_sides(mesh)
     progress("export: OpenFOAM")
     for part in ("0", "constant/polyMesh", "system"):
         (folder / part).mkdir(parents=True, exist_ok=True)
     types = {patch.name: _patch_type(mesh, patch, sides) for patch in mesh.patches}
     write_poly_mesh(mesh, folder / "constant/polyMesh", types, settings.encoding)
-    _write(folder / "0/U", _velocity(types, flow))
+    _write(folder / "0/U", _velocity(types, flow, slip.condition(mesh) if slip else "type noSlip;"))
     _write(folder / "0/p", _pressure(types))
-    _write(folder / "constant/transportProperties", foam.format_transport(flow))
-    _write(folder / "constant/turbulenceProperties", foam.format_turbulence())
-    _write(folder / "system/controlDict", foam.format_control_dict(flow))
-    _write(folder / "system/fvSchemes", foam.format_fv_schemes())
+    for name, text in foam.format_constant(flow, settings.dialect).items():
+        _write(folder / "constant" / name, text)
+    _write(folder / "system/controlDict", foam.format_control_dict(flow, settings.dialect))
+    _write(folder / "system/fvSchemes", foam.format_fv_schemes(sides == "cyclic"))
     _write(folder / "system/fvSolution", foam.format_fv_solution())
     _write(folder / "system/decomposeParDict", foam.format_decompose(2))
     _write(folder / "case.foam", "")
-    for name, script in (("Allrun", foam.ALLRUN), ("Allclean", foam.ALLCLEAN)):
+    for name, script in (("Allrun", foam.format_allrun(settings.dialect)), ("Allclean", foam.ALLCLEAN)):
         _write(folder / name, script)
         (folder / name).chmod(0o755)
 
@@ -80,6 +89,9 @@ def _patch_type(mesh: FaceMesh, patch: Patch, sides: str) -> str:
         return "type wall;"
     if patch.name in SIDES and sides == "symmetry":
         return "type symmetryPlane;" if _is_exact_plane(mesh, patch) else "type symmetry;"
+    if patch.name in SIDES and sides == "cyclic":
+        # entries about the transformation differ between OpenFOAM's dialects, and none is needed
+        return f"type cyclic; neighbourPatch {SIDES[SIDES.index(patch.name) ^ 1]};"
     return "type patch;"
 
 
@@ -90,13 +102,13 @@ def _is_exact_plane(mesh: FaceMesh, patch: Patch) -> bool:
     return len(set(mesh.points[corners, axis].tolist())) == 1
 
 
-def _velocity(types: dict[str, str], flow: Flow) -> str:
+def _velocity(types: dict[str, str], flow: Flow, on_fibers: str) -> str:
     through = f"(0 0 {flow.face_velocity!r})"
     conditions = {
         name: {
             INLET: f"type fixedValue; value uniform {through};",
             OUTLET: "type zeroGradient;",
-            FIBERS: "type noSlip;",
+            FIBERS: on_fibers,
         }.get(name, _side_condition(kind, "type slip;"))
         for name, kind in types.items()
     }
@@ -117,4 +129,4 @@ def _pressure(types: dict[str, str]) -> str:
 
 def _side_condition(kind: str, otherwise: str) -> str:
     # a side of a constraint type takes the condition of the same name
-    return otherwise if kind == "type patch;" else kind
+    return otherwise if kind == "type patch;" else kind.split(";")[0] + ";"

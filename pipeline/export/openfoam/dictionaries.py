@@ -6,6 +6,10 @@ drag settles 7 to 10 % too high however fine the mesh.
 
 from pipeline.data import FIBERS, INLET, OUTLET, Flow
 from pipeline.export.openfoam.foam_file import format_header
+from pipeline.export.settings import Dialect
+
+SOLVER: dict[Dialect, str] = {"com": "simpleFoam", "org": "foamRun"}
+"""Program that runs the case; OpenFOAM.org has had one for all solvers since its version 11."""
 
 
 def _dictionary(name: str, location: str, body: str) -> str:
@@ -93,7 +97,7 @@ relaxationFactors
     )
 
 
-def format_control_dict(flow: Flow, iterations: int = 2000) -> str:
+def format_control_dict(flow: Flow, dialect: Dialect = "com", iterations: int = 2000) -> str:
     """`system/controlDict`, with function objects that tell pressure drop, flow rates and drag.
 
     An unconverged run would leave nothing, so the fields are written at the last iteration too.
@@ -105,14 +109,14 @@ def format_control_dict(flow: Flow, iterations: int = 2000) -> str:
             _patch_value("inletFlow", INLET, "sum", "phi"),
             _patch_value("outletFlow", OUTLET, "sum", "phi"),
             _drag(flow),
-            _STOP,
+            _stop(dialect),
         ]
     )
     return _dictionary(
         "controlDict",
         "system",
         f"""
-application     simpleFoam;
+application     {SOLVER[dialect]};
 solver          incompressibleFluid;
 startFrom       latestTime;
 startTime       0;
@@ -171,33 +175,40 @@ def _drag(flow: Flow) -> str:
 """
 
 
-_STOP = """    stop
-    {
+def _stop(dialect: Dialect) -> str:
+    return f"""    stop
+    {{
         // "touch stop" in the case's folder ends a run after its next iteration, with its fields written
-        type            abort;
+        type            {"abort" if dialect == "com" else "stopAtFile"};
         libs            ("libutilityFunctionObjects.so");
         file            "$FOAM_CASE/stop";
         action          writeNow;
-    }
+    }}
 """
 
 
-def format_transport(flow: Flow) -> str:
-    """`constant/transportProperties`: a Newtonian fluid's kinematic viscosity."""
-    return _dictionary(
-        "transportProperties",
-        "constant",
+def format_constant(flow: Flow, dialect: Dialect = "com") -> dict[str, str]:
+    """Give the files of `constant/`: a Newtonian fluid's kinematic viscosity, and no turbulence.
+
+    Examples
+    --------
+    >>> air = Flow(0.025, 293.0, 1.8e-5, 1.2, 65e-9)
+    >>> sorted(format_constant(air)), sorted(format_constant(air, "org"))
+    (['transportProperties', 'turbulenceProperties'], ['momentumTransport', 'physicalProperties'])
+    """
+    names = {
+        "com": ("transportProperties", "turbulenceProperties"),
+        "org": ("physicalProperties", "momentumTransport"),
+    }[dialect]
+    bodies = (
         f"""
 transportModel  Newtonian;
 viscosityModel  constant;
 nu              [0 2 -1 0 0 0 0] {flow.viscosity / flow.density!r};
 """,
+        "simulationType  laminar;",
     )
-
-
-def format_turbulence() -> str:
-    """`constant/turbulenceProperties`: none."""
-    return _dictionary("turbulenceProperties", "constant", "simulationType  laminar;")
+    return {name: _dictionary(name, "constant", body) for name, body in zip(names, bodies, strict=True)}
 
 
 def format_decompose(cores: int) -> str:
@@ -233,7 +244,7 @@ def format_field(name: str, kind: str, dimensions: str, internal: str, boundary:
     )
 
 
-ALLRUN = """#!/bin/sh
+_ALLRUN = """#!/bin/sh
 # Checks the mesh and runs the solver: ./Allrun [cores]
 cd "${0%/*}" || exit 1
 # Debian's package has no environment to source, only this
@@ -259,15 +270,21 @@ if [ "$cores" -gt 1 ]; then
     sed -i -e "s/^numberOfSubdomains .*/numberOfSubdomains $cores;/" -e "s/n  *(1 1 .*/n       (1 1 $cores);/" \\
         system/decomposeParDict
     run decomposePar decomposePar -force
-    run simpleFoam ${MPIRUN:-mpirun} -np "$cores" simpleFoam -parallel
+    run SOLVER ${MPIRUN:-mpirun} -np "$cores" SOLVER -parallel
     run reconstructPar reconstructPar -latestTime
 else
-    run simpleFoam simpleFoam
+    run SOLVER SOLVER
 fi
 for value in inletPressure inletFlow outletFlow; do
     echo "$value: $(tail -q -n 1 postProcessing/$value/*/surfaceFieldValue*.dat | tail -n 1)"
 done
 """
+
+
+def format_allrun(dialect: Dialect = "com") -> str:
+    """Script that checks the mesh and runs the case, on one core or more."""
+    return _ALLRUN.replace("SOLVER", SOLVER[dialect])
+
 
 ALLCLEAN = """#!/bin/sh
 # Removes what a run left behind: times, logs and the parts of a parallel run
