@@ -1,1 +1,6 @@
 """The air in tetrahedra."""
+
+from pipeline.tetmesh.mesh import TetmeshMeasures, tetrahedralize
+from pipeline.tetmesh.settings import TetmeshSettings
+
+__all__ = ["TetmeshMeasures", "TetmeshSettings", "tetrahedralize"]

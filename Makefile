@@ -1,0 +1,46 @@
+# fibertwin: one command each. `make` alone explains itself.
+PYTHON ?= python3
+CASE   ?= cases/default.toml
+VENV   := .venv
+BIN    := $(VENV)/bin
+READY  := $(VENV)/.ready
+
+.DEFAULT_GOAL := help
+.PHONY: help setup case test test-slow check bench clean
+
+help:  ## Say what there is
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-10s %s\n", $$1, $$2}'
+	@echo "  CASE=cases/...  which case 'make case' runs (now $(CASE)); PYTHON=... which Python 3.11+ makes the environment"
+
+setup: $(READY)  ## Make the Python environment in .venv
+
+$(READY): pyproject.toml constraints.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+	  || { echo "fibertwin needs Python 3.11 or newer, $(PYTHON) is older; say which with make PYTHON=python3.12"; exit 1; }
+	@$(PYTHON) -m venv $(VENV) \
+	  || { echo "no virtual environment could be made; on Debian: apt-get install python3-venv"; exit 1; }
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	@touch $(READY)
+
+case: setup  ## Run a case end to end into runs/<its name>
+	$(BIN)/fibertwin run $(CASE)
+
+test: setup  ## Run the tests (those that need OpenFOAM are skipped where it is missing)
+	$(BIN)/pytest
+
+test-slow: setup  ## Run the tests that take minutes
+	$(BIN)/pytest -m slow --timeout 3600
+
+check: setup  ## Style, types, imports, and the examples in the documentation
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/pytest --doctest-modules pipeline docs README.md
+
+bench: setup  ## Measure what the documentation quotes
+	$(BIN)/pytest benchmarks --benchmark-only --benchmark-group-by=func
+
+clean:  ## Remove what can be made again (runs/ is kept)
+	rm -rf $(VENV) .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks .import_linter_cache dist build
+	find pipeline tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,173 @@
+"""The case file: TOML in, valid settings out, every mistake told at once."""
+
+import difflib
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from pipeline.analytics.settings import FlowSettings
+from pipeline.enclosure.settings import EnclosureSettings
+from pipeline.errors import CaseError
+from pipeline.export.settings import ExportSettings
+from pipeline.mat.settings import STOPS, FileSettings, MatSettings
+from pipeline.quality.settings import QualitySettings
+from pipeline.solve.settings import SolveSettings
+from pipeline.surface.settings import SurfaceSettings
+from pipeline.tetmesh.settings import TetmeshSettings
+from pipeline.units import FROM_FILE
+
+LARGEST_FILE = 1_000_000
+"""No case file is larger than this many bytes: a larger one is something else."""
+
+
+class Case(BaseModel):
+    """One case: a table of settings per stage, in SI once read."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    mat: MatSettings = Field(description="The fiber mat: how it is drawn and when it is complete.")
+    surface: SurfaceSettings = Field(default_factory=SurfaceSettings, description="The fibers as a closed surface.")
+    enclosure: EnclosureSettings = Field(default_factory=EnclosureSettings, description="The duct around the mat.")
+    tetmesh: TetmeshSettings = Field(default_factory=TetmeshSettings, description="The air in tetrahedra.")
+    export: ExportSettings = Field(default_factory=ExportSettings, description="The files for solvers and viewers.")
+    quality: QualitySettings = Field(default_factory=QualitySettings, description="The limits a good mesh keeps to.")
+    flow: FlowSettings = Field(default_factory=FlowSettings, description="The air: its velocity and its properties.")
+    solve: SolveSettings = Field(default_factory=SolveSettings, description="The run of the solver.")
+
+
+def read_case(path: Path, overrides: tuple[str, ...] = ()) -> Case:
+    """Read a case file and apply overrides like ``mat.seed=7``.
+
+    Raises
+    ------
+    CaseError
+        If the file cannot be read, is no TOML, or asks for nonsense; the message has one line per mistake.
+    """
+    case = validate(override(read_toml(path), overrides), str(path))
+    if isinstance(case.mat, FileSettings):
+        # a path in a case file starts from the case file, wherever the command is run
+        case = case.model_copy(update={"mat": case.mat.model_copy(update={"file": path.parent / case.mat.file})})
+    return case
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Read a TOML file as nested dictionaries.
+
+    Raises
+    ------
+    CaseError
+        If the file cannot be read or is no TOML.
+    """
+    try:
+        if path.is_file() and path.stat().st_size > LARGEST_FILE:
+            raise CaseError(f"{path} has {path.stat().st_size} bytes; a case file may have {LARGEST_FILE}")
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as problem:
+        raise CaseError(f"cannot read the case file {path}: {problem.strerror}") from problem
+    except UnicodeDecodeError as problem:
+        raise CaseError(f"{path} is not a text file in UTF-8: {problem.reason} at byte {problem.start}") from problem
+    except (tomllib.TOMLDecodeError, RecursionError) as problem:
+        raise CaseError(f"{path} is not valid TOML: {problem}") from problem
+
+
+def override(content: dict[str, Any], overrides: tuple[str, ...]) -> dict[str, Any]:
+    """Give a copy of the case's content with each ``table.key=value`` put in.
+
+    A value is read as TOML where it is TOML, and as text otherwise, so that ``mat.side=20 um`` needs no quotes.
+    Setting one key of ``mat.stop`` replaces the stop, since there is only one.
+
+    Raises
+    ------
+    CaseError
+        If an override is not of the form ``table.key=value``.
+
+    Examples
+    --------
+    >>> override({"mat": {"seed": 1}}, ("mat.seed=7", "mat.side=20 um"))
+    {'mat': {'seed': 7, 'side': '20 um'}}
+    """
+    result = _copy(content)
+    for text in overrides:
+        path, equals, value = text.partition("=")
+        keys = path.strip().split(".")
+        if not equals or not all(keys):
+            raise CaseError(f"--set {text!r}: write table.key=value, like --set mat.seed=7")
+        table = result
+        for depth, key in enumerate(keys[:-1]):
+            table = table.setdefault(key, {})
+            if not isinstance(table, dict):
+                raise CaseError(f"--set {text!r}: {'.'.join(keys[: depth + 1])} is a value, not a table")
+        if keys[:-1] == ["mat", "stop"] and keys[-1] in STOPS:
+            for other in STOPS:
+                table.pop(other, None)
+        table[keys[-1]] = _toml_value(value.strip())
+    return result
+
+
+def _copy(content: dict[str, Any]) -> dict[str, Any]:
+    return {key: _copy(value) if isinstance(value, dict) else value for key, value in content.items()}
+
+
+def _toml_value(text: str) -> Any:
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except (tomllib.TOMLDecodeError, RecursionError):
+        return text
+
+
+def validate(content: dict[str, Any], source: str) -> Case:
+    """Make a case of a file's content.
+
+    Raises
+    ------
+    CaseError
+        With one line per mistake: its path, what is wrong, and what would do.
+    """
+    try:
+        return Case.model_validate(content, context=FROM_FILE)
+    except ValidationError as problem:
+        lines = [_line(error, content) for error in problem.errors(include_url=False)]
+        count = f"{len(lines)} mistakes" if len(lines) > 1 else "a mistake"
+        raise CaseError(f"{source} has {count}:\n" + "\n".join(f"  {line}" for line in lines)) from None
+
+
+def _line(error: Any, content: dict[str, Any]) -> str:
+    keys = [str(key) for key in error["loc"] if _is_key(str(key), error["loc"], content)]
+    place = ".".join(keys) or "the case"
+    message = str(error["msg"]).removeprefix("Value error, ")
+    value = error.get("input")
+    match error["type"]:
+        case "extra_forbidden":
+            near = difflib.get_close_matches(keys[-1], _known(keys[:-1]), n=1)
+            advice = f"did you mean {near[0]}?" if near else f"known: {', '.join(_known(keys[:-1])) or 'none'}"
+            return f"{place}: unknown key; {advice}"
+        case "missing":
+            return f"{place}: missing; add it"
+        case "value_error" | "assertion_error":
+            return f"{place}: {message}"
+    return f"{place} = {value!r}: {message[:1].lower()}{message[1:]}"
+
+
+def _is_key(key: str, loc: tuple[object, ...], content: dict[str, Any]) -> bool:
+    # pydantic puts the tag of a union's branch into the path; people know only the keys of their file
+    return key not in _TAGS
+
+
+_TAGS = {"layered", "box", "array", "file", "constant", "normal", "lognormal", "uniform", "mixture", "float"}
+
+
+def _known(tables: list[str]) -> list[str]:
+    schema = Case.model_json_schema()
+    found = [schema]
+    for table in tables:
+        found = [branch for part in found for branch in _branches(part.get("properties", {}).get(table, {}), schema)]
+    return sorted({name for part in found for name in part.get("properties", {})})
+
+
+def _branches(part: dict[str, Any], schema: dict[str, Any]) -> list[dict[str, Any]]:
+    if "$ref" in part:
+        return _branches(schema["$defs"][part["$ref"].rsplit("/", 1)[-1]], schema)
+    nested = [*part.get("anyOf", []), *part.get("oneOf", []), *part.get("allOf", [])]
+    return [part, *(branch for option in nested for branch in _branches(option, schema))]

@@ -1,0 +1,154 @@
+"""The commands of `fibertwin`."""
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import App, CycloptsError, Parameter
+from rich.console import Console
+
+from pipeline.errors import FibertwinError
+
+app = App(
+    name="fibertwin",
+    help="From a fiber mat to a CFD case one can trust: one TOML file in, a checked OpenFOAM case out.",
+    version_flags=["--version"],
+)
+out = Console()
+err = Console(stderr=True)
+
+INTERRUPTED = 130
+"""Exit code after Ctrl-C, as shells have it."""
+WRONG_USE = 2
+"""Exit code of a command line that asks for nonsense."""
+
+
+@app.command
+def run(
+    case: Path,
+    *,
+    out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+    until: str | None = None,
+    set_: Annotated[tuple[str, ...], Parameter(name=["--set", "-s"], negative="", consume_multiple=False)] = (),
+    force: Annotated[tuple[str, ...], Parameter(negative="", consume_multiple=False)] = (),
+    quiet: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Run a case through the line: mat, surface, enclosure, tetmesh, quality, export, compare.
+
+    Finished stages are reused while nothing they depend on has changed, so a run that was stopped continues.
+
+    Parameters
+    ----------
+    case
+        The case file (TOML).
+    out
+        Folder of this run; ``runs/<name of the case file>`` if left out.
+    until
+        Last stage to run.
+    set_
+        Override a key of the case file: ``--set mat.seed=7``. May be repeated.
+    force
+        Make this stage again even if its result still holds. May be repeated.
+    quiet
+        Print nothing but errors.
+    """
+    from pipeline.cli.running import run_case
+
+    run_case(case, out or Path("runs") / case.stem, until, set_, force, quiet)
+
+
+@app.command
+def predict(
+    source: Path | None = None,
+    *,
+    solidity: str | None = None,
+    thickness: str | None = None,
+    fiber_diameter: str | None = None,
+    face_velocity: str | None = None,
+    particle_diameter: str | None = None,
+    particle_spread: str | None = None,
+    temperature: str | None = None,
+    preset: str | None = None,
+    pressure_model: str | None = None,
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    plot: Path | None = None,
+) -> None:
+    """Predict pressure drop and efficiency with the analytical models, without any mesh.
+
+    Parameters
+    ----------
+    source
+        A case file, whose mat is grown, or the folder of a run; options below change what it says.
+    solidity
+        Fiber volume over mat volume: ``9.5 %`` or 0.095.
+    thickness
+        Thickness of the mat: ``47 um``.
+    fiber_diameter
+        Diameter of the fibers: ``1.4 um``.
+    face_velocity
+        Flow rate over the face's area: ``2.5 cm/s``.
+    particle_diameter
+        Particle size at which efficiencies are told: ``300 nm``.
+    particle_spread
+        Geometric standard deviation of a lognormal aerosol: 1.6.
+    temperature
+        Of the air: ``20 degC``.
+    preset
+        Single-fiber model: paper, table_a6 or hinds.
+    pressure_model
+        Pressure-drop model that the figure of merit is made with.
+    as_json
+        Print JSON with SI numbers instead of tables.
+    plot
+        Draw efficiency, figure of merit and pressure drop into this file (svg, png or pdf).
+    """
+    from pipeline.cli.predicting import predict_filter
+
+    texts = {
+        "solidity": solidity,
+        "thickness": thickness,
+        "fiber_diameter": fiber_diameter,
+        "face_velocity": face_velocity,
+        "particle_diameter": particle_diameter,
+        "particle_spread": particle_spread,
+        "temperature": temperature,
+        "preset": preset,
+        "pressure_model": pressure_model,
+    }
+    predict_filter(source, {name: text for name, text in texts.items() if text is not None}, as_json, plot)
+
+
+@app.command
+def schema() -> None:
+    """Print the JSON Schema of the case file."""
+    from pipeline.case import Case
+
+    sys.stdout.write(json.dumps(Case.model_json_schema(), indent=2) + "\n")
+
+
+@app.command
+def doctor() -> None:
+    """Say what is installed, in which version, and what is missing; exit code 1 if anything needed is."""
+    from pipeline.cli.doctor import examine
+    from pipeline.cli.tables import findings_table
+
+    findings = examine()
+    out.print(findings_table(findings))
+    if not all(finding.fine for finding in findings if finding.needed):
+        raise SystemExit(1)
+
+
+def main() -> None:
+    """Run the command line: a user's mistake becomes one message and an exit code, a bug keeps its traceback."""
+    try:
+        app(exit_on_error=False, print_error=False)
+    except CycloptsError as problem:
+        err.print(f"error: {problem}; see fibertwin --help", style="red", markup=False, highlight=False, soft_wrap=True)
+        raise SystemExit(WRONG_USE) from None
+    except FibertwinError as problem:
+        err.print(f"error: {problem}", style="red", markup=False, highlight=False, soft_wrap=True)
+        raise SystemExit(problem.exit_code) from None
+    except KeyboardInterrupt:
+        err.print("stopped; finished stages are kept, and the same command continues")
+        raise SystemExit(INTERRUPTED) from None

@@ -1,0 +1,72 @@
+"""What this machine has of what fibertwin needs and can use."""
+
+import importlib.metadata
+import os
+import platform
+import shutil
+import subprocess
+from dataclasses import dataclass
+
+import psutil
+
+_OPENFOAM = ("checkMesh", "simpleFoam")
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One thing looked for: what was found, whether that will do, and what to do if not."""
+
+    name: str
+    found: str
+    fine: bool
+    needed: bool
+    advice: str = ""
+
+
+def examine() -> list[Finding]:
+    """Look at the interpreter, the libraries, OpenFOAM, memory and cores."""
+    findings = [Finding("Python", platform.python_version(), True, True)]
+    for requirement in importlib.metadata.requires("fibertwin") or []:
+        if "extra ==" in requirement:
+            continue
+        name = requirement.split(">")[0].split(";")[0].strip()
+        findings.append(_library(name))
+    findings.append(_openfoam())
+    memory = psutil.virtual_memory()
+    enough = memory.available >= 4 * 2**30
+    findings.append(
+        Finding(
+            "memory",
+            f"{memory.available / 2**30:.1f} of {memory.total / 2**30:.1f} GiB free",
+            enough,
+            False,
+            "" if enough else "the default case wants 4 GiB: close other programs, or raise tetmesh.edge",
+        )
+    )
+    findings.append(Finding("cores", str(os.cpu_count()), True, False))
+    return findings
+
+
+def _library(name: str) -> Finding:
+    try:
+        return Finding(name, importlib.metadata.version(name), True, True)
+    except importlib.metadata.PackageNotFoundError:
+        return Finding(name, "missing", False, True, "make setup")
+
+
+def _openfoam() -> Finding:
+    missing = [program for program in _OPENFOAM if shutil.which(program) is None]
+    if missing:
+        return Finding(
+            "OpenFOAM",
+            f"{', '.join(missing)} not on the PATH",
+            False,
+            False,
+            "only `solve` needs it; on Debian: apt-get install openfoam",
+        )
+    environment = {"WM_PROJECT_DIR": "/usr/share/openfoam", **os.environ}
+    answer = subprocess.run(
+        ["simpleFoam", "-help"], capture_output=True, text=True, env=environment, check=False, timeout=60
+    )
+    version = next((line.split(":", 1)[1].strip() for line in answer.stdout.splitlines() if "Using" in line), "found")
+    return Finding("OpenFOAM", version, True, False)

@@ -1,0 +1,46 @@
+"""`fibertwin predict`: the analytical models for numbers, a case or a run."""
+
+import dataclasses
+import json
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+from rich.console import Console
+
+from pipeline.analytics import filter_of_comparison, filter_of_mat, predict, prediction_tables
+from pipeline.analytics.options import read_options
+from pipeline.analytics.settings import FilterSettings, FlowSettings
+from pipeline.case import read_case
+from pipeline.cli.tables import plain_table
+from pipeline.mat import generate
+from pipeline.run import Run, mat_predictor
+from pipeline.store import disk_trouble_explained
+
+
+def predict_filter(source: Path | None, given: Mapping[str, str], as_json: bool, plot: Path | None) -> None:
+    """Print what the models say, and draw it where a plot is asked for."""
+    medium, flow = read_options(given, *_known(source)) if source else read_options(given)
+    if plot is not None:
+        # matplotlib takes a second to load, for nobody who wants numbers only
+        from pipeline.analytics.plots import plot_prediction, save_figure
+
+        with disk_trouble_explained(plot):
+            save_figure(plot_prediction(medium, flow), plot)
+    prediction = predict(medium, flow)
+    if as_json:
+        sys.stdout.write(json.dumps(dataclasses.asdict(prediction), indent=2, allow_nan=False) + "\n")
+        return
+    out = Console()
+    for table in prediction_tables(prediction):
+        out.print(plain_table(table.title, table.columns, table.rows))
+
+
+def _known(source: Path) -> tuple[FilterSettings, FlowSettings]:
+    if source.is_dir():
+        run = Run.opened(source)
+        if (source / "compare").is_dir():
+            return filter_of_comparison(dataclasses.asdict(run.comparison)), run.case.flow
+        return filter_of_mat(run.mat, run.case.flow.flow()), run.case.flow
+    case = read_case(source)
+    return filter_of_mat(generate(case.mat, mat_predictor(case)), case.flow.flow()), case.flow

@@ -1,0 +1,40 @@
+"""`fibertwin run`: the line with its progress, and a summary that says where everything is."""
+
+from pathlib import Path
+
+from rich.console import Console
+
+from pipeline.case import read_case
+from pipeline.cli.listen import listening
+from pipeline.cli.tables import outcome_table, result_tables
+from pipeline.errors import CaseError
+from pipeline.run import STAGES, Run, run
+
+
+def run_case(
+    path: Path, folder: Path, until: str | None, overrides: tuple[str, ...], force: tuple[str, ...], quiet: bool
+) -> None:
+    """Run a case file and print what came of it."""
+    for name in (*force, *([until] if until else [])):
+        if name not in STAGES:
+            raise CaseError(f"there is no stage {name!r}; the stages are {', '.join(STAGES)}")
+    case = read_case(path, overrides)
+    out = Console()
+    with listening(out, quiet) as tell:
+        outcomes = run(case, folder, until or STAGES[-1], frozenset(force), tell)
+    if quiet:
+        return
+    out.print(outcome_table(outcomes))
+    for table in result_tables(Run(case, folder), {outcome.stage for outcome in outcomes}):
+        out.print(table)
+    out.print(*_next_steps(folder), sep="\n", markup=False, highlight=False, soft_wrap=True)
+
+
+def _next_steps(folder: Path) -> list[str]:
+    steps = [f"Everything is in {folder}"]
+    openfoam, vtk = folder / "export" / "openfoam", folder / "export" / "vtk"
+    if openfoam.is_dir():
+        steps.append(f"  solve it:   cd {openfoam} && ./Allrun")
+    if vtk.is_dir():
+        steps.append(f"  look at it: paraview {next(vtk.glob('*.vtm'), vtk)}")
+    return steps

@@ -1,0 +1,249 @@
+"""The line: one noun in, one noun out per stage, each result kept on disk and reused while it holds."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pipeline import store
+from pipeline.analytics import compare, predictor
+from pipeline.analytics.growth import Predictor
+from pipeline.case import Case
+from pipeline.data import Comparison, FluidDomain, Mat, QualityReport, Surface, TetMesh
+from pipeline.enclosure.duct import enclose
+from pipeline.errors import StageError
+from pipeline.export import export
+from pipeline.geometry.tets import volume_between
+from pipeline.mat import BoxSettings, FileSettings, LayeredSettings, generate, measure
+from pipeline.progress import Progress, silent
+from pipeline.quality import cell_fields, judge
+from pipeline.surface.files import write_surface
+from pipeline.surface.union import unite
+from pipeline.tetmesh import tetrahedralize
+
+CASE = "case.json"
+"""File of a run's folder that holds its case, every setting in SI."""
+
+Counts = dict[str, object]
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """One step of the line: what it needs, what else its result depends on, and how it is made.
+
+    `make` writes into a folder of its own and gives the counts for the manifest.
+    """
+
+    name: str
+    needs: tuple[str, ...]
+    settings: tuple[str, ...]
+    rooms: tuple[str, ...]
+    libraries: tuple[str, ...]
+    make: Callable[["Run", Path, Progress], Counts]
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of a stage: made, reused, or skipped for a reason."""
+
+    stage: str
+    folder: Path
+    how: str
+    seconds: float
+    counts: Counts
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A case and the folder that holds its finished stages; what a stage made is read from there."""
+
+    case: Case
+    folder: Path
+
+    @classmethod
+    def opened(cls, folder: Path) -> "Run":
+        """Open the folder of an earlier run.
+
+        Raises
+        ------
+        StageError
+            If the folder is not one.
+        """
+        if not (folder / CASE).is_file():
+            raise StageError(f"{folder} is no run: it has no {CASE}; make one with fibertwin run CASE --out {folder}")
+        return cls(store.load_json(Case, folder / CASE), folder)
+
+    @property
+    def mat(self) -> Mat:
+        """The fiber mat."""
+        return store.load(Mat, self.folder / "mat" / "mat.npz")
+
+    @property
+    def surface(self) -> Surface:
+        """The fibers' surface."""
+        return store.load(Surface, self.folder / "surface" / "surface.npz")
+
+    @property
+    def domain(self) -> FluidDomain:
+        """The air's surface."""
+        return store.load(FluidDomain, self.folder / "enclosure" / "domain.npz")
+
+    @property
+    def mesh(self) -> TetMesh:
+        """The air in tetrahedra."""
+        return store.load(TetMesh, self.folder / "tetmesh" / "mesh.npz")
+
+    @property
+    def quality(self) -> QualityReport:
+        """What the mesh is like."""
+        return store.load_json(QualityReport, self.folder / "quality" / "quality.json")
+
+    @property
+    def comparison(self) -> Comparison:
+        """The pressure drops side by side."""
+        return store.load_json(Comparison, self.folder / "compare" / "comparison.json")
+
+    def manifest(self, stage: str) -> dict[str, Any] | None:
+        """Tell what made a finished stage; None where it is not there."""
+        path = self.folder / stage / store.MANIFEST
+        return dict(store.read_json(path)) if path.exists() else None
+
+
+def _make_mat(run: Run, into: Path, tell: Progress) -> Counts:
+    settings = run.case.mat
+    mat = generate(settings, mat_predictor(run.case), tell)
+    measures = measure(mat)
+    store.save(mat, into / "mat.npz")
+    store.write_json(into / "measures.json", measures)
+    return {"fibers": mat.fibers, "segments": mat.segments}
+
+
+def mat_predictor(case: Case) -> Predictor | None:
+    """Make what a mat that grows toward a predicted quantity asks after each fiber."""
+    # arrays and fibers from a file grow toward nothing
+    return predictor(case.mat.stop, case.flow) if isinstance(case.mat, LayeredSettings | BoxSettings) else None
+
+
+def _make_surface(run: Run, into: Path, tell: Progress) -> Counts:
+    surface = unite(run.mat, run.case.surface, tell)
+    store.save(surface, into / "surface.npz")
+    write_surface(surface, into)
+    return {"triangles": len(surface.triangles), "solidity": surface.solidity}
+
+
+def _make_enclosure(run: Run, into: Path, tell: Progress) -> Counts:
+    domain = enclose(run.surface, run.case.enclosure, tell)
+    store.save(domain, into / "domain.npz")
+    return {"triangles": len(domain.triangles), "fluid_volume": domain.volume}
+
+
+def _make_tetmesh(run: Run, into: Path, tell: Progress) -> Counts:
+    mesh, measures = tetrahedralize(run.domain, run.case.tetmesh, tell)
+    store.save(mesh, into / "mesh.npz")
+    store.write_json(into / "measures.json", measures)
+    return {"cells": measures.cells, "volume_error": measures.volume_error}
+
+
+def _make_quality(run: Run, into: Path, tell: Progress) -> Counts:
+    report = judge(run.mesh.face_mesh(), run.case.quality, tell)
+    store.write_json(into / "quality.json", report)
+    return {"verdict": report.verdict, "max_non_orthogonality": report.metrics["non_orthogonality"].max}
+
+
+def _make_export(run: Run, into: Path, tell: Progress) -> Counts:
+    mesh, case = run.mesh.face_mesh(), run.case
+    fields = cell_fields(mesh) if "vtk" in case.export.formats else {}
+    written = export(mesh, into, case.export, case.flow.flow(), case.enclosure.sides, tell, fields)
+    return {"formats": list(written)}
+
+
+def _make_compare(run: Run, into: Path, tell: Progress) -> Counts:
+    mesh = run.mesh
+    air = volume_between(mesh.points, mesh.tets, mesh.slab.lower[2], mesh.slab.upper[2])
+    comparison = compare(run.mat, run.surface.solidity, 1.0 - air / mesh.slab.volume, run.case.flow.flow())
+    store.write_json(into / "comparison.json", comparison)
+    return {"mesh_solidity": comparison.solidity["mesh"]}
+
+
+LINE = (
+    Stage("mat", (), ("mat", "flow"), ("mat", "analytics"), ("numpy", "numba"), _make_mat),
+    Stage("surface", ("mat",), ("surface",), ("surface",), ("manifold3d", "numpy"), _make_surface),
+    Stage("enclosure", ("surface",), ("enclosure",), ("enclosure",), ("manifold3d", "numpy"), _make_enclosure),
+    Stage("tetmesh", ("enclosure",), ("tetmesh",), ("tetmesh",), ("pytetwild", "numpy", "numba"), _make_tetmesh),
+    Stage("quality", ("tetmesh",), ("quality",), ("quality",), ("numpy",), _make_quality),
+    Stage(
+        "export",
+        ("tetmesh",),
+        ("export", "flow", "enclosure"),
+        ("export", "quality"),
+        ("numpy", "pyvista"),
+        _make_export,
+    ),
+    Stage("compare", ("mat", "surface", "tetmesh"), ("flow",), ("analytics",), ("numpy", "scipy"), _make_compare),
+)
+STAGES = tuple(stage.name for stage in LINE)
+
+
+def run(
+    case: Case, folder: Path, until: str = STAGES[-1], force: frozenset[str] = frozenset(), tell: Progress = silent
+) -> list[Outcome]:
+    """Run the line for a case, stage by stage, and reuse what still holds.
+
+    Parameters
+    ----------
+    case : Case
+    folder : Path
+        Where this run's stages are kept; made if it is not there.
+    until : str
+        The last stage to run, one of `STAGES`.
+    force : frozenset of str
+        Stages to make again though they hold.
+    tell : Progress
+
+    Returns
+    -------
+    list of Outcome
+        One per stage, in order.
+
+    Raises
+    ------
+    StageError
+        If a stage cannot do what the case asks, or the folder cannot be written; finished stages are kept.
+    """
+    outcomes = []
+    this = Run(case, folder)
+    with store.locked(folder):
+        store.write_json(folder / CASE, case.model_dump(mode="json"))
+        for stage in LINE[: STAGES.index(until) + 1]:
+            outcomes.append(_step(stage, this, stage.name in force, tell))
+    return outcomes
+
+
+def _step(stage: Stage, run: Run, again: bool, tell: Progress) -> Outcome:
+    folder = run.folder / stage.name
+    identity = _identity(stage, run)
+    key = store.digest(identity)
+    done = None if again else store.finished(folder, key)
+    if done is not None:
+        tell(f"{stage.name}: reused", 1.0)
+        return Outcome(stage.name, folder, "reused", float(done["seconds"]), done["counts"])
+    began = time.perf_counter()
+    with store.side_folder(folder) as side:
+        counts = stage.make(run, side, tell)
+        seconds = time.perf_counter() - began
+        store.write_manifest(side, {"stage": stage.name, "key": key, **identity, "seconds": seconds, "counts": counts})
+    return Outcome(stage.name, folder, "made", seconds, counts)
+
+
+def _identity(stage: Stage, run: Run) -> dict[str, Any]:
+    """All that a stage's result depends on."""
+    settings = run.case.model_dump(mode="json")
+    source = run.case.mat.file if stage.name == "mat" and isinstance(run.case.mat, FileSettings) else None
+    return {
+        **({"file": store.file_digest(source)} if source is not None and source.is_file() else {}),
+        "parameters": {name: settings[name] for name in stage.settings},
+        "inputs": {name: store.digest((run.manifest(name) or {})["files"]) for name in stage.needs},
+        "code": store.code_digest(stage.rooms),
+        "libraries": store.versions(stage.libraries),
+    }

@@ -1,0 +1,94 @@
+r"""Split the tetrahedra that sit in a corner of the boundary.
+
+A tetrahedron with two or three faces on the boundary hangs on its neighbors by two faces or one: the gradient at its
+center is not determined (OpenFOAM's cell determinant is 0), and `checkMesh -allGeometry` refuses the mesh. ::
+
+        c                    c
+       /|\                  /|\        boundary: abc and abd, which share ab
+      / | \                / | \       the edge opposite ab is cd: a point m on it parts the cell into two
+     a--+--b     ->       a--+--b      with one boundary face each, and each cell around cd into two as well
+      \ | /                \ m /
+       \|/                  \|/
+        d                    d
+"""
+
+import numpy as np
+
+from pipeline.data import Floats, Ints
+from pipeline.geometry.tets import FACES, boundary
+
+_EDGES = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
+_ROUNDS = 20  # neighboring corners take turns; on real mats three rounds were the most
+
+
+def split_corners(points: Floats, tets: Ints) -> tuple[Floats, Ints]:
+    """Split cells until none has more than one boundary face.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+    tets : (m, 4) int array
+        Positive tetrahedra.
+
+    Returns
+    -------
+    points : (n + k, 3) array
+    tets : (m + j, 4) int array
+        Positive; they fill the same space.
+    """
+    for _ in range(_ROUNDS):
+        _, cell = boundary(tets)
+        on_boundary = np.bincount(cell, minlength=len(tets))
+        three = np.flatnonzero(on_boundary >= 3)
+        two = np.flatnonzero(on_boundary == 2)
+        if len(three):
+            points, tets = _with_centers(points, tets, three)
+        elif len(two):
+            points, tets = _with_midpoints(points, tets, _opposite_edges(tets, two))
+        else:
+            break
+    return points, tets
+
+
+def _with_centers(points: Floats, tets: Ints, chosen: Ints) -> tuple[Floats, Ints]:
+    center = len(points) + np.arange(len(chosen))
+    parts = np.concatenate([np.column_stack([tets[chosen][:, FACES[side][::-1]], center]) for side in range(4)])
+    return (
+        np.concatenate([points, points[tets[chosen]].mean(axis=1)]),
+        np.concatenate([np.delete(tets, chosen, axis=0), parts]),
+    )
+
+
+def _opposite_edges(tets: Ints, cells: Ints) -> Ints:
+    faces, owner = boundary(tets)
+    order = np.argsort(owner, kind="stable")
+    owner, faces = owner[order], faces[order]
+    pair = faces[np.searchsorted(owner, cells)[:, None] + np.arange(2)]  # (cells, 2 faces, 3 corners)
+    corners = tets[cells]
+    # the opposite edge joins the two corners that lie on one of the two boundary faces only
+    shared = (corners[:, :, None] == pair[:, 0][:, None, :]).any(axis=2) & (
+        corners[:, :, None] == pair[:, 1][:, None, :]
+    ).any(axis=2)
+    return np.sort(corners[~shared].reshape(-1, 2), axis=1)
+
+
+def _with_midpoints(points: Floats, tets: Ints, edges: Ints) -> tuple[Floats, Ints]:
+    count = len(points)
+    keys = np.unique(edges[:, 0] * count + edges[:, 1])
+    of_tets = np.sort(tets[:, _EDGES], axis=2)
+    tet_keys = of_tets[..., 0] * count + of_tets[..., 1]
+    wanted = np.isin(tet_keys, keys)
+    # a cell takes one split a round: of several edges the lowest key goes first, the others wait
+    first = np.where(wanted, tet_keys, np.iinfo(np.int64).max).min(axis=1, keepdims=True)
+    keys = np.setdiff1d(keys, tet_keys[wanted & (tet_keys != first)])
+    hit = np.isin(tet_keys, keys)
+    cell, edge = np.nonzero(hit)
+    middle = count + np.searchsorted(keys, tet_keys[cell, edge])
+    low, high = of_tets[cell, edge].T
+    near = np.where(tets[cell] == high[:, None], middle[:, None], tets[cell])
+    far = np.where(tets[cell] == low[:, None], middle[:, None], tets[cell])
+    ends = points[np.column_stack([keys // count, keys % count])]
+    return (
+        np.concatenate([points, ends.mean(axis=1)]),
+        np.concatenate([np.delete(tets, cell, axis=0), near, far]),
+    )

@@ -1,0 +1,59 @@
+"""Fill the crevices that no mesh resolves, and drop the pockets that no flow reaches.
+
+Where a fiber grazes a side of the duct, or two fibers touch, the air ends in a wedge without thickness. The cells in
+its tip have all their vertices on the boundary, so that none can be moved, and no shape of theirs suits a solver.
+The air in them stands still: they are given to the fibers, a few millionths of the air.
+"""
+
+import numpy as np
+import numpy.typing as npt
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from pipeline.data import Ints
+from pipeline.geometry.adjacency import neighbors
+from pipeline.geometry.tets import boundary
+
+
+def in_crevice(tets: Ints, vertices: int, faulty: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """Find the faulty cells that lie in the tip of a wedge.
+
+    Parameters
+    ----------
+    tets : (m, 4) int array
+    vertices : int
+        Number of vertices.
+    faulty : (m,) bool array
+        Cells that a solver would find fault with.
+
+    Returns
+    -------
+    (m,) bool array
+        Those with a face on the boundary and every vertex on it.
+    """
+    faces, cell = boundary(tets)
+    on_boundary = np.zeros(vertices, dtype=bool)
+    on_boundary[faces] = True
+    touching = np.zeros(len(tets), dtype=bool)
+    touching[cell] = True
+    result: npt.NDArray[np.bool_] = faulty & touching & on_boundary[tets].all(axis=1)
+    return result
+
+
+def largest_part(tets: Ints) -> npt.NDArray[np.bool_]:
+    """Find the cells of the largest part of a mesh, parts being joined through faces.
+
+    Parameters
+    ----------
+    tets : (m, 4) int array
+
+    Returns
+    -------
+    (m,) bool array
+    """
+    across = neighbors(tets)
+    cell, side = np.nonzero(across >= 0)
+    links = coo_array((np.ones(len(cell), dtype=np.int8), (cell, across[cell, side])), shape=(len(tets),) * 2)
+    _, part = connected_components(links, directed=False)
+    result: npt.NDArray[np.bool_] = part == np.bincount(part).argmax()
+    return result

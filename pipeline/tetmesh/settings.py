@@ -1,0 +1,50 @@
+"""What a user may ask of the tetrahedral mesh."""
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from pipeline.units import Duration, Fraction, Memory, PositiveRatio, Ratio
+
+
+class TetmeshSettings(BaseModel):
+    """Settings of the stage `tetmesh`; lengths are in mean fiber diameters, so that a case scales as a whole."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    engine: Literal["tetwild"] = Field(default="tetwild", description="The mesher: fTetWild.")
+    edge: PositiveRatio = Field(
+        default=0.6, le=20, description="Edge length of the tetrahedra at the fibers, in mean fiber diameters."
+    )
+    growth: Ratio = Field(
+        default=0.4,
+        le=3,
+        description="How much longer the edges become per distance from the fibers; 0 for the same length everywhere.",
+    )
+    largest_edge: PositiveRatio = Field(
+        default=3.0, description="Longest edge length far from the fibers, in mean fiber diameters."
+    )
+    envelope: PositiveRatio = Field(
+        default=0.04,
+        le=0.25,
+        description="How far the mesh's boundary may stray from the fibers' surface, in mean fiber diameters.",
+    )
+    passes: int = Field(
+        default=2,
+        ge=1,
+        le=200,
+        description="Rounds of splitting, collapsing, swapping and smoothing before the edge lengths are refined.",
+    )
+    stop_energy: PositiveRatio = Field(
+        default=100.0,
+        ge=3.0,
+        description="Conformal energy of the worst tetrahedron at which rounds end (3 is ideal); "
+        "the few cells that a solver would object to are mended afterwards.",
+    )
+    volume_error: Fraction = Field(
+        default=0.02, description="Largest error of the fibers' volume against the surface that is accepted."
+    )
+    time_limit: Duration = Field(default=3600.0, description="The mesher is ended after this time.")
+    memory_limit: Memory | None = Field(
+        default=None, description="The mesher is ended above this much memory; if left out, 85 % of the machine's."
+    )
