@@ -10,6 +10,8 @@ from numba import njit
 from pipeline.data import Floats, Ints
 from pipeline.geometry.crossings import bins, crosses_any
 
+_SHARPEST_WEDGE = -0.9  # cosine between the normals of neighbors: a wedge of 26 degrees
+
 Bools = npt.NDArray[np.bool_]
 Near = tuple[Floats, Ints, Ints, Ints, float]
 """Triangles sorted into cubes, and the cubes' size: see `bins`."""
@@ -47,8 +49,44 @@ def _normal(a: Floats, b: Floats, c: Floats) -> tuple[Floats, float, float]:
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
+def _folds(
+    points: Floats, triangles: Ints, first: Ints, around: Ints, corner: Ints, one: int, two: int, gone: int
+) -> bool:
+    """Whether a new triangle lies nearly back on back with a neighbor: in a wedge that thin they may have swapped.
+
+    Triangles at both points `one` and `two` are about to go; `gone` is about to become `two`.
+    """
+    normal, _, _ = _normal(points[corner[0]], points[corner[1]], points[corner[2]])
+    for j in range(4):
+        at = corner[j] if j < 3 else gone
+        if at < 0:
+            continue
+        for k in range(first[at], first[at + 1]):
+            other = triangles[around[k]]
+            if one in (other[0], other[1], other[2]) and two in (other[0], other[1], other[2]):
+                continue
+            shared = 0
+            moved = np.where(other == gone, two, other)
+            for v in moved:
+                shared += v in (corner[0], corner[1], corner[2])
+            if shared == 2:
+                other_normal, _, _ = _normal(points[moved[0]], points[moved[1]], points[moved[2]])
+                if normal @ other_normal < _SHARPEST_WEDGE:
+                    return True
+    return False
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
 def _may_collapse(
-    points: Floats, triangles: Ints, first: Ints, around: Ints, gone: int, kept: int, least: float, near: Near
+    points: Floats,
+    triangles: Ints,
+    first: Ints,
+    around: Ints,
+    gone: int,
+    kept: int,
+    sides: Ints,
+    least: float,
+    near: Near,
 ) -> bool:
     """Whether moving point `gone` onto `kept` leaves a surface that neither folds nor touches itself."""
     shared = 0
@@ -71,6 +109,8 @@ def _may_collapse(
             continue
         old, old_height, _ = _normal(points[corner[0]], points[corner[1]], points[corner[2]])
         moved = np.where(corner == gone, kept, corner)
+        if sides[moved[0]] & sides[moved[1]] & sides[moved[2]]:
+            return False  # a new piece of the flat cut, which would overlap the others unseen
         new, new_height, _ = _normal(points[moved[0]], points[moved[1]], points[moved[2]])
         if new_height < min(least, old_height) or old @ new < _LEAST_COSINE:
             return False
@@ -82,6 +122,8 @@ def _may_collapse(
         moved = np.where(corner == gone, kept, corner)
         if crosses_any(points, triangles, moved, skip, near[0], near[1], near[2], near[3], near[4]):
             return False
+        if _folds(points, triangles, first, around, moved, gone, kept, gone):
+            return False
     return True
 
 
@@ -91,7 +133,6 @@ def _collapse(
     triangles: Ints,
     pairs: Ints,
     sides: Ints,
-    fixed: Bools,
     crease: Ints,
     least: Floats,
     alive: Bools,
@@ -104,12 +145,11 @@ def _collapse(
     for e in range(len(pairs)):
         for turn in range(2):
             gone, kept = pairs[e, turn], pairs[e, 1 - turn]
-            # a point on a side or on the line where fibers meet stays on it
-            if fixed[gone] or sides[gone] & ~sides[kept] or crease[gone] > crease[kept]:
+            # a point on a side stays, or opposite sides of a periodic mat would not fit; a point on the line where
+            # fibers meet stays on that line
+            if sides[gone] or crease[gone] > crease[kept] or locked[gone] or locked[kept]:
                 continue
-            if locked[gone] or locked[kept]:
-                continue
-            if not _may_collapse(points, triangles, first, around, gone, kept, least[gone], near):
+            if not _may_collapse(points, triangles, first, around, gone, kept, sides, least[gone], near):
                 continue
             for k in range(first[gone], first[gone + 1]):
                 t = around[k]
@@ -126,7 +166,7 @@ def _collapse(
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
-def _flip(points: Floats, triangles: Ints, label: Ints, sides: Ints, fixed: Bools, least: Floats, near: Near) -> int:
+def _flip(points: Floats, triangles: Ints, label: Ints, sides: Ints, least: Floats, near: Near) -> int:
     """Turn the longest side of triangles that have next to no height; give how many."""
     first, around = _stars(triangles, len(points))
     locked = np.zeros(len(points), dtype=np.bool_)
@@ -154,8 +194,9 @@ def _flip(points: Floats, triangles: Ints, label: Ints, sides: Ints, fixed: Bool
         for i in range(first[c], first[c + 1]):
             if d in (triangles[around[i], 0], triangles[around[i], 1], triangles[around[i], 2]):
                 joined = True
-        flat = sides[a] & sides[b] & sides[d]
-        if joined or flat & ~sides[c] or (fixed[a] and fixed[b]):
+        # an edge within a side stays, and no new piece of the flat cut is made
+        flat = sides[a] & sides[b] | sides[a] & sides[c] & sides[d] | sides[b] & sides[c] & sides[d]
+        if joined or flat:
             continue
         normal, other_height, _ = _normal(points[b], points[a], points[d])
         one, one_height, _ = _normal(points[a], points[d], points[c])
@@ -168,6 +209,10 @@ def _flip(points: Floats, triangles: Ints, label: Ints, sides: Ints, fixed: Bool
         if crosses_any(points, triangles, left, nothing, near[0], near[1], near[2], near[3], near[4]):
             continue
         if crosses_any(points, triangles, right, nothing, near[0], near[1], near[2], near[3], near[4]):
+            continue
+        if _folds(points, triangles, first, around, left, a, b, -1):
+            continue
+        if _folds(points, triangles, first, around, right, a, b, -1):
             continue
         triangles[t] = left
         triangles[other] = right
@@ -185,7 +230,7 @@ def _near(points: Floats, triangles: Ints, pad: float) -> Near:
 
 
 def tidied(
-    points: Floats, triangles: Ints, fiber: Ints, radius: Floats, sides: Ints, tolerance: float, frozen_sides: bool
+    points: Floats, triangles: Ints, fiber: Ints, radius: Floats, sides: Ints, tolerance: float
 ) -> tuple[Floats, Ints, Ints]:
     """Collapse edges shorter than the tolerance and flip triangles a tenth of it high.
 
@@ -199,11 +244,9 @@ def tidied(
     fiber : (m,) int array
     radius : (fibers,) array [m]
     sides : (n,) int array
-        Bit per side of the plan that a point lies on: it stays on all of them.
+        Bit per side of the plan that a point lies on: such points stay where they are.
     tolerance : float
         In diameters of the thinnest fiber at a point; no point moves farther.
-    frozen_sides : bool
-        Keep the points on the sides where they are: the sides of a periodic mat must fit each other.
 
     Returns
     -------
@@ -211,7 +254,6 @@ def tidied(
         The closed surface that is left.
     """
     triangles, fiber = triangles.copy(), fiber.copy()
-    fixed = (sides != 0) & frozen_sides
     for _ in range(_MOST_ROUNDS):
         thinnest, thickest = np.full(len(points), np.iinfo(np.int64).max), np.full(len(points), -1)
         size = np.full(len(points), np.inf)
@@ -228,11 +270,11 @@ def tidied(
         order = np.argsort(length[chosen], kind="stable")
         near = _near(points, triangles, float(short[np.isfinite(short)].max()))
         alive = np.ones(len(triangles), dtype=np.bool_)
-        changed = _collapse(points, triangles, pairs[chosen][order], sides, fixed, crease, 0.1 * short, alive, near)
+        changed = _collapse(points, triangles, pairs[chosen][order], sides, crease, 0.1 * short, alive, near)
         triangles, fiber = triangles[alive], fiber[alive]
         if changed:
             near = _near(points, triangles, 0.0)
-        changed += _flip(points, triangles, fiber, sides, fixed, 0.1 * short, near)
+        changed += _flip(points, triangles, fiber, sides, 0.1 * short, near)
         if changed == 0:
             break
     used, corner = np.unique(triangles, return_inverse=True)

@@ -49,7 +49,7 @@ def unite(mat: Mat, settings: SurfaceSettings, progress: Progress = silent) -> S
 
         progress(f"clearing splinters from {len(triangles)} triangles")
         points, triangles, fiber = tidied(
-            points, triangles, fiber, mat.radius, _sides(points, mat.slab), settings.smallest_edge, mat.periodic
+            points, triangles, fiber, mat.radius, _sides(points, mat.slab), settings.smallest_edge
         )
     return Surface(points, triangles, fiber, mat.radius, mat.slab)
 
