@@ -8,23 +8,30 @@ import numpy as np
 
 from pipeline.geometry.compiled import compiled
 from pipeline.geometry.triangles import Floats, Ints
+from pipeline.mat.profile import profile
+
+_LOOK = 1024
+"""Earlier fibers to go through before asking whether the older ones can still matter; then again at each doubling."""
 
 _LIFT = 4e-9
 """Share of the distance by which a clear contact is lifted, to stay clear once coordinates are rounded."""
 
 
 @compiled
-def crossings(
+def supports(
     chord: Floats,
     radius: float,
     chords: Floats,
     radii: Floats,
+    peaks: Floats,
     first: Ints,
     nodes: Floats,
     spacing: float,
     period: float,
+    slope: float,
+    clear: bool,
 ) -> Floats:
-    """Find the supports of the paper: one where the chord crosses an earlier fiber in plan.
+    """Find where a new fiber rests on the earlier ones.
 
     Parameters
     ----------
@@ -35,6 +42,8 @@ def crossings(
     chords : (fibers, 5) array
         The earlier fibers in plan, in the same way.
     radii : (fibers,) array [m]
+    peaks : (fibers,) array [m]
+        Highest axis of each fiber and those before it.
     first : (fibers + 1,) int array
         Fiber k has the nodes ``first[k]`` to ``first[k + 1]``.
     nodes : (n, 2) array [m]
@@ -43,72 +52,69 @@ def crossings(
         Gap between surfaces.
     period : float [m]
         Period of the plan in x and y; 0 for a plan that does not wrap.
+    slope : float [-]
+        Relaxation slope.
+    clear : bool
+        Whether to keep clear of every earlier fiber, or to rest as in the paper: on fibers that the chord crosses in
+        plan, at z_old + r_old + r_new + spacing.
 
     Returns
     -------
     (supports, 2) array [m]
-        Place along the chord and least height of the new fiber's axis: z_old + r_old + r_new + spacing.
+        Place along the chord, within it, and least height of the new fiber's axis there. Supports that lie below
+        all of the new fiber's profile may be missing.
     """
-    supports = np.empty((64, 2))
+    found = np.empty((64, 2))
     count = 0
-    for k in range(len(radii)):
-        cross = chord[2] * chords[k, 3] - chord[3] * chords[k, 2]
-        if cross == 0.0:
-            continue
-        columns, rows = _images(chord, chords[k], 0, 0.0, period), _images(chord, chords[k], 1, 0.0, period)
-        for i in range(columns[0], columns[1]):
-            for j in range(rows[0], rows[1]):
-                gap_x, gap_y = chords[k, 0] + i * period - chord[0], chords[k, 1] + j * period - chord[1]
-                x = (gap_x * chords[k, 3] - gap_y * chords[k, 2]) / cross
-                t = (gap_x * chord[3] - gap_y * chord[2]) / cross
-                if 0.0 <= x <= chord[4] and 0.0 <= t <= chords[k, 4]:
-                    supports = _with_room(supports, count)
-                    supports[count, 0] = x
-                    supports[count, 1] = _height(nodes[first[k] : first[k + 1]], t) + radii[k] + radius + spacing
-                    count += 1
-    return supports[:count]
-
-
-@compiled
-def clearances(
-    chord: Floats,
-    radius: float,
-    chords: Floats,
-    radii: Floats,
-    first: Ints,
-    nodes: Floats,
-    spacing: float,
-    period: float,
-    slope: float,
-) -> Floats:
-    """Find supports that keep the new fiber's axis r_old + r_new + spacing away from every earlier axis.
-
-    A line that falls with the slope passes clear over a point of an earlier axis at (xi, z), rho beside the chord,
-    if it stays above the disc of radius sqrt(R^2 - rho^2) there. Over a straight piece, the height of that line at the
-    chord's start, c = slope xi + z + k sqrt(R^2 - rho^2) with k = sqrt(1 + slope^2), is concave, with its maximum at
-    rho = m R / sqrt(k^2 + m^2), m = (slope d xi + d z) / d rho, or at an end. The falling and the rising line over a
-    piece meet in the apex of its tent. Pieces are cut to at most 4 R along the chord: one tent over a long piece
-    that runs beside the chord would stand needlessly high.
-
-    The parameters are those of `crossings`, and the relaxation slope.
-
-    Returns
-    -------
-    (supports, 2) array [m]
-        Place along the chord, within it, and least height of the new fiber's axis there.
-    """
-    supports = np.empty((64, 2))
-    count = 0
-    for k in range(len(radii)):
+    # how far a support may stand above the highest axis below it: a tent over a piece of up to 4 R climbs 2 R slope
+    above = radii.max() + radius + spacing if len(radii) > 0 else 0.0
+    if clear:
+        above *= (np.sqrt(1.0 + slope * slope) + 2.0 * slope) * (1.0 + 1e-6)
+    lowest, look = -np.inf, _LOOK
+    for back in range(len(radii)):
+        k = len(radii) - 1 - back
+        if back == look:
+            # the newest fibers lie on top: once these bear the new fiber all along, those far below do not matter
+            laid = profile(found[:count, 0].copy(), found[:count, 1].copy(), slope, radius, chord[4])
+            lowest, look = laid[:, 1].min(), 2 * look
+        if peaks[k] + above <= lowest:
+            break
         reach = (radii[k] + radius + spacing) * (1.0 + _LIFT)
         columns, rows = _images(chord, chords[k], 0, reach, period), _images(chord, chords[k], 1, reach, period)
         for i in range(columns[0], columns[1]):
             for j in range(rows[0], rows[1]):
                 gap_x, gap_y = chords[k, 0] + i * period - chord[0], chords[k, 1] + j * period - chord[1]
-                supports, count = _tents(
-                    chord, chords[k], gap_x, gap_y, nodes[first[k] : first[k + 1]], reach, slope, supports, count
-                )
-    return supports[:count]
+                other = nodes[first[k] : first[k + 1]]
+                if clear:
+                    found, count = _tents(chord, chords[k], gap_x, gap_y, other, reach, slope, found, count)
+                else:
+                    height = radii[k] + radius + spacing
+                    found, count = _crossing(chord, chords[k], gap_x, gap_y, other, height, found, count)
+    return found[:count]
+
+
+@compiled
+def _crossing(
+    chord: Floats,
+    other: Floats,
+    gap_x: float,
+    gap_y: float,
+    nodes: Floats,
+    height: float,
+    found: Floats,
+    count: int,
+) -> tuple[Floats, int]:
+    """Add the paper's support, `height` above the axis where the chord crosses the other fiber in plan, if it does."""
+    cross = chord[2] * other[3] - chord[3] * other[2]
+    if cross == 0.0:
+        return found, count
+    x = (gap_x * other[3] - gap_y * other[2]) / cross
+    t = (gap_x * chord[3] - gap_y * chord[2]) / cross
+    if 0.0 <= x <= chord[4] and 0.0 <= t <= other[4]:
+        found = _with_room(found, count)
+        found[count, 0], found[count, 1] = x, _height(nodes, t) + height
+        count += 1
+    return found, count
 
 
 @compiled
@@ -120,19 +126,27 @@ def _tents(
     nodes: Floats,
     reach: float,
     slope: float,
-    supports: Floats,
+    found: Floats,
     count: int,
 ) -> tuple[Floats, int]:
-    """Add the supports over one earlier fiber, which starts `gap_x`, `gap_y` from the chord's start."""
+    """Add supports that keep the new fiber's axis `reach` away from an earlier one, `gap_x`, `gap_y` from its start.
+
+    A line that falls with the slope passes clear over a point of the earlier axis at (xi, z), rho beside the chord,
+    if it stays above the disc of radius sqrt(R^2 - rho^2) there. Over a straight piece, the height of that line at the
+    chord's start, c = slope xi + z + k sqrt(R^2 - rho^2) with k = sqrt(1 + slope^2), is concave, with its maximum at
+    rho = m R / sqrt(k^2 + m^2), m = (slope d xi + d z) / d rho, or at an end. The falling and the rising line over a
+    piece meet in the apex of its tent. Pieces are cut to at most 4 R along the chord: one tent over a long piece
+    that runs beside the chord would stand needlessly high.
+    """
     # along and across the chord: where the earlier fiber starts, and how fast it goes
     xi_start, rho_start = chord[2] * gap_x + chord[3] * gap_y, chord[2] * gap_y - chord[3] * gap_x
     along, across = chord[2] * other[2] + chord[3] * other[3], chord[2] * other[3] - chord[3] * other[2]
     begin, end = _stretch(rho_start, across, -reach, reach, 0.0, other[4])
     if begin > end:
-        return supports, count
+        return found, count
     begin, end = _stretch(xi_start, along, -reach, chord[4] + reach, begin, end)
     if begin > end:
-        return supports, count
+        return found, count
     steep = np.sqrt(1.0 + slope * slope)
     node = _segment(nodes, begin)
     while node < len(nodes) - 1 and nodes[node, 0] <= end:
@@ -146,11 +160,11 @@ def _tents(
             piece = (xi_start + along * t, rho_start + across * t, nodes[node, 1] + rise * (t - nodes[node, 0]))
             fall = _highest(piece, step, slope, steep, reach)
             climb = _highest(piece, step, -slope, steep, reach)
-            supports = _with_room(supports, count)
-            supports[count, 0], supports[count, 1] = _apex(fall, climb, slope, chord[4])
+            found = _with_room(found, count)
+            found[count, 0], found[count, 1] = _apex(fall, climb, slope, chord[4])
             count += 1
         node += 1
-    return supports, count
+    return found, count
 
 
 @compiled
@@ -228,9 +242,9 @@ def _images(chord: Floats, other: Floats, axis: int, reach: float, period: float
 
 
 @compiled
-def _with_room(supports: Floats, count: int) -> Floats:
-    if count < len(supports):
-        return supports
-    larger = np.empty((2 * len(supports), 2))
-    larger[: len(supports)] = supports
+def _with_room(found: Floats, count: int) -> Floats:
+    if count < len(found):
+        return found
+    larger = np.empty((2 * len(found), 2))
+    larger[: len(found)] = found
     return larger

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pipeline.geometry.triangles import Floats, Ints
-from pipeline.mat.contact import clearances, crossings
+from pipeline.mat.contact import supports
 from pipeline.mat.profile import profile
 
 _Scalar = TypeVar("_Scalar", bound=np.generic)
@@ -29,6 +29,7 @@ class Pile:
         self.ends: Floats = np.empty((256, 2, 2))
         self.chords: Floats = np.empty((256, 5))
         self.radius: Floats = np.empty(256)
+        self.peaks: Floats = np.empty(256)
         self.first: Ints = np.zeros(257, np.int64)
         self.nodes: Floats = np.empty((4096, 2))
 
@@ -38,12 +39,14 @@ class Pile:
         end = begin + len(nodes)
         if self.count == len(self.radius):
             self.ends, self.chords = _doubled(self.ends), _doubled(self.chords)
-            self.radius, self.first = _doubled(self.radius), _doubled(self.first)
+            self.radius, self.peaks = _doubled(self.radius), _doubled(self.peaks)
+            self.first = _doubled(self.first)
         while end > len(self.nodes):
             self.nodes = _doubled(self.nodes)
         self.ends[self.count] = ends
         self.chords[self.count] = chord
         self.radius[self.count] = radius
+        self.peaks[self.count] = max(nodes[:, 1].max(), self.peaks[self.count - 1] if self.count else 0.0)
         self.nodes[begin:end] = nodes
         self.count += 1
         self.first[self.count] = end
@@ -95,16 +98,20 @@ def drop(
         Place along the chord and height of each vertex.
     """
     count = pile.count
-    below = (
+    found = supports(
+        chord,
+        radius,
         pile.chords[:count],
         pile.radius[:count],
+        pile.peaks[:count],
         pile.first[: count + 1],
         pile.nodes,
         spacing,
         pile.period,
+        slope,
+        contact == "clear",
     )
-    supports = crossings(chord, radius, *below) if contact == "paper" else clearances(chord, radius, *below, slope)
-    return profile(supports[:, 0].copy(), supports[:, 1].copy(), slope, radius, float(chord[4]))
+    return profile(found[:, 0].copy(), found[:, 1].copy(), slope, radius, float(chord[4]))
 
 
 def _doubled(array: npt.NDArray[_Scalar]) -> npt.NDArray[_Scalar]:

@@ -83,6 +83,44 @@ def test_the_papers_mats_interpenetrate_as_the_method_says() -> None:
     assert np.mean(shares) == pytest.approx(0.86, abs=0.04)
 
 
+def height_at(share: float, nodes: Floats, axis: np.intp) -> float:
+    places = (nodes[:, axis] - nodes[0, axis]) / (nodes[-1, axis] - nodes[0, axis])
+    return float(np.interp(share, places, nodes[:, 2]))
+
+
+def thick(contact: str) -> Mat:
+    """A mat many layers thick, where only the newest of its fibers matter to the next one."""
+    asked = {"side": 10e-6, "fiber_diameter": 0.5e-6, "relaxation_slope": 0.3, "stop": {"count": 2600}}
+    return generate(LayeredSettings.model_validate(asked | {"contact": contact}))
+
+
+def test_leaving_out_the_fibers_far_below_keeps_a_thick_mat_clear() -> None:
+    assert audit(thick("clear")).violations == 0
+
+
+def test_in_a_thick_mat_of_the_paper_no_fiber_sinks_under_one_that_it_crosses() -> None:
+    mat = thick("paper")
+    ends = [mat.nodes[mat.first[k] : mat.first[k + 1]] for k in range(mat.fibers)]
+    least = math.inf
+    for new in range(mat.fibers - 12, mat.fibers):
+        for old in range(new):
+            a, b = ends[new], ends[old]
+            u, v, gap = a[-1, :2] - a[0, :2], b[-1, :2] - b[0, :2], b[0, :2] - a[0, :2]
+            cross = u[0] * v[1] - u[1] * v[0]
+            s, t = (gap[0] * v[1] - gap[1] * v[0]) / cross, (gap[0] * u[1] - gap[1] * u[0]) / cross
+            if 0 < s < 1 and 0 < t < 1:
+                along = np.abs(u).argmax(), np.abs(v).argmax()
+                heights = [
+                    np.interp(
+                        share, (nodes[:, axis] - nodes[0, axis]) / (nodes[-1, axis] - nodes[0, axis]), nodes[:, 2]
+                    )
+                    for share, axis, nodes in ((s, along[0], a), (t, along[1], b))
+                ]
+                least = min(least, heights[0] - heights[1])
+    # some rest on each other: the least difference is the diameter itself
+    assert least == pytest.approx(0.5e-6, rel=1e-6)
+
+
 def over_one(angle: float, slope: float, contact: Any) -> Floats:
     """A fiber laid at an angle over the middle of a fiber on the ground, both of radius 0.5 and 100 long."""
     pile = Pile()
