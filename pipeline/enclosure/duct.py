@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial import cKDTree
 
 from pipeline.data import FIBERS, INLET, OUTLET, PATCHES, SIDES, FluidDomain, Surface
 from pipeline.enclosure.settings import EnclosureSettings
-from pipeline.errors import StageError
+from pipeline.errors import CaseError, StageError
 from pipeline.geometry.box import Box
 from pipeline.geometry.solids import box_minus
 from pipeline.geometry.triangles import Floats, Ints, connected_pieces, signed_volumes, winding_number
@@ -90,10 +91,14 @@ def enclose(surface: Surface, settings: EnclosureSettings, progress: Progress = 
 
     Raises
     ------
+    CaseError
+        If the sides are to be cyclic and opposite ones do not fit each other.
     StageError
         If fibers touch the end of a plenum or close the duct, or the difference fails.
     """
     box = duct(surface, settings)
+    if settings.sides == "cyclic":
+        _check_opposite_sides(surface)
     progress(f"cutting {len(surface.triangles)} triangles out of the duct")
     points, triangles, origin = box_minus(box, surface.points, surface.triangles)
     plane = _plane_of(points, triangles, origin, box)
@@ -104,6 +109,28 @@ def enclose(surface: Surface, settings: EnclosureSettings, progress: Progress = 
     patch = np.array([*(PATCHES.index(name) for name in _PLANES), PATCHES.index(FIBERS)])[plane]
     fiber = np.where(origin >= 0, surface.fiber[np.maximum(origin, 0)], -1)
     return FluidDomain(points, triangles, patch, PATCHES, fiber, surface.radius, box, surface.slab)
+
+
+def _check_opposite_sides(surface: Surface) -> None:
+    # a corner's edge is a third of a diameter at the default: rounding may set one more point on it, which is no harm
+    near = 0.6 * float(surface.radius.min())
+    for axis, name in ((0, "x"), (1, "y")):
+        low, high = (
+            np.delete(surface.points[surface.points[:, axis] == side], axis, axis=1)
+            for side in (surface.slab.lower[axis], surface.slab.upper[axis])
+        )
+        alone = _without_partner(low, high, near) + _without_partner(high, low, near)
+        if alone:
+            raise CaseError(
+                f'enclosure.sides = "cyclic" needs a periodic mat: {alone} of {len(low) + len(high)} points on the '
+                f'sides across {name} have no partner opposite; set mat.periodic = true or enclosure.sides = "symmetry"'
+            )
+
+
+def _without_partner(points: Floats, others: Floats, near: float) -> int:
+    if len(points) == 0 or len(others) == 0:
+        return len(points)
+    return int(np.count_nonzero(cKDTree(others).query(points)[0] > near))
 
 
 def _plane_of(points: Floats, triangles: Ints, origin: Ints, box: Box) -> Ints:

@@ -6,11 +6,11 @@ import pytest
 from pipeline.data import FIBERS, PATCHES, Mat
 from pipeline.enclosure.duct import enclose, fiber_spacing
 from pipeline.enclosure.settings import EnclosureSettings
-from pipeline.errors import StageError
+from pipeline.errors import CaseError, StageError
 from pipeline.geometry.triangles import area_vectors
 from pipeline.surface.settings import SurfaceSettings
 from pipeline.surface.union import unite
-from tests.surface.mats import CROSSING, EVERY_MAT, RADIUS, SIDE, mat_of
+from tests.surface.mats import CROSSING, EVERY_MAT, RADIUS, SIDE, WRAPPING, WRAPPING_A_CORNER, mat_of
 
 PLENUMS = EnclosureSettings(inlet=5e-6, outlet=7e-6)
 
@@ -92,3 +92,12 @@ def test_a_pocket_against_a_side_is_left_out_and_told() -> None:
     pockets = domain.box.volume - surface.volume - domain.volume
     assert 0 < pockets < 2e-3 * surface.volume
     assert any("2 closed pockets" in line for line in told)
+
+
+def test_cyclic_sides_want_a_periodic_mat() -> None:
+    cyclic = EnclosureSettings(inlet=5e-6, outlet=5e-6, sides="cyclic")
+    for mat in (WRAPPING, WRAPPING_A_CORNER):
+        assert enclose(unite(mat, SurfaceSettings()), cyclic).volume > 0
+    slanted = unite(mat_of([(0, 4, 5), (10, 6, 5)]), SurfaceSettings())
+    with pytest.raises(CaseError, match=r"needs a periodic mat: .* points on the sides across x have no partner"):
+        enclose(slanted, cyclic)
