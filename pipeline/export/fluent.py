@@ -19,7 +19,7 @@ _CONDITIONS = {
 }
 """Number and name of the condition that a patch gets. Fluent's symmetry is its frictionless wall too."""
 FLUID_ZONE = 2
-_ROWS = 200_000  # faces that become text at once: the memory stays small
+_ROWS = 20_000  # faces that become text at once: the memory stays small
 
 
 def write_fluent(mesh: FaceMesh, path: Path, sides: str = "symmetry", progress: Progress = silent) -> None:

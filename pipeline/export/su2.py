@@ -6,6 +6,7 @@ from pathlib import Path
 from pipeline.data import FaceMesh
 from pipeline.progress import Progress, silent
 
+_ROWS = 20_000  # lines that become text at once: the memory stays small
 _TRIANGLE, _TETRAHEDRON = 5, 10  # VTK's numbers
 
 
@@ -29,7 +30,10 @@ def write_su2(mesh: FaceMesh, path: Path, progress: Progress = silent) -> None:
 def format_su2(mesh: FaceMesh) -> Iterator[str]:
     """Give the file's text, piece by piece."""
     yield f"NDIME= 3\nNELEM= {mesh.cells}\n"
-    yield "".join(f"{_TETRAHEDRON} {a} {b} {c} {d} {k}\n" for k, (a, b, c, d) in enumerate(mesh.tets().tolist()))
+    tets = mesh.tets()
+    for start in range(0, mesh.cells, _ROWS):
+        rows = enumerate(tets[start : start + _ROWS].tolist(), start)
+        yield "".join(f"{_TETRAHEDRON} {a} {b} {c} {d} {k}\n" for k, (a, b, c, d) in rows)
     yield f"NPOIN= {len(mesh.points)}\n"
     yield "".join(f"{x!r} {y!r} {z!r} {k}\n" for k, (x, y, z) in enumerate(mesh.points.tolist()))
     yield f"NMARK= {len(mesh.patches)}\n"

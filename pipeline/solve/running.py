@@ -25,6 +25,8 @@ from pipeline.solve.environment import environment, openfoam_missing
 from pipeline.solve.settings import SolveSettings
 from pipeline.solve.settled import change
 
+MASS_ERROR = 1e-5
+"""A pressure drop counts as settled only where as much air leaves as enters, to this share."""
 _POLL = 0.3  # seconds between two looks at a run
 _SAVES = 100  # iterations between two states that a killed run continues from
 _PR_SET_PDEATHSIG = 1
@@ -211,7 +213,7 @@ def _watch(
         drops = _pressure_drops(work, flow)
         if len(drops):
             last = change(drops[:, 1], settings.window)
-            settled = settled or last < settings.tolerance
+            settled = settled or (last < settings.tolerance and abs(_mass_error(work)) < MASS_ERROR)
             _tell(progress, log, drops, last, settings)
             if not math.isfinite(drops[-1, 1]):
                 break
@@ -237,6 +239,13 @@ def _pressure_drops(work: Path, flow: Flow) -> Floats:
     return np.column_stack([inlet[:both, 0], flow.density * (inlet[:both, 1] - outlet[:both, 1])])
 
 
+def _mass_error(work: Path) -> float:
+    """Flow out over flow in, less 1, at the last iteration that both are known of."""
+    inlet, outlet = (read_back.history(work, name)[:, 1] for name in (read_back.FLOW_IN, read_back.FLOW_OUT))
+    both = min(len(inlet), len(outlet))
+    return float(-outlet[both - 1] / inlet[both - 1] - 1.0) if both else math.inf
+
+
 def _tell(progress: Progress, log: Path, drops: Floats, last: float, settings: SolveSettings) -> None:
     found = read_back.residuals(read_back.tail(log, 60))
     told = ", ".join(f"{name} {value:.1e}" for name, value in sorted(found.items()))
@@ -255,7 +264,6 @@ def _solution(work: Path, flow: Flow, bed: Bed, settled: bool, seconds: float, c
     # the third number of the force's first vector: along z
     drag = float(read_back.history(work, read_back.DRAG, 3)[-1, 1])
     flow_in = -float(read_back.history(work, read_back.FLOW_IN)[-1, 1])
-    flow_out = float(read_back.history(work, read_back.FLOW_OUT)[-1, 1])
     law = flow.viscosity * flow.face_velocity * bed.thickness / drop
     diameter = math.sqrt(bed.pressure_factor * law) if bed.pressure_factor is not None else None
     f_star = drag / (bed.fiber_length * flow.viscosity * flow.face_velocity) if bed.fiber_length is not None else None
@@ -263,9 +271,9 @@ def _solution(work: Path, flow: Flow, bed: Bed, settled: bool, seconds: float, c
         pressure_drop=drop,
         flow_rate=flow_in,
         drag=drag,
-        permeability=law,
-        force_balance_error=drag / (drop * bed.face_area) - 1.0,
-        mass_balance_error=flow_out / flow_in - 1.0,
+        permeability=float(law),
+        force_balance_error=float(drag / (drop * bed.face_area) - 1.0),
+        mass_balance_error=_mass_error(work),
         iterations=int(drops[-1, 0]),
         converged=settled,
         seconds=seconds,

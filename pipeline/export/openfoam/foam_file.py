@@ -1,6 +1,6 @@
 """OpenFOAM's file format: the header of each file, and its lists in text and in binary."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from itertools import pairwise
 
 from pipeline.data import Floats, Ints
@@ -8,6 +8,7 @@ from pipeline.export.settings import Encoding
 
 ARCHITECTURE = "LSB;label=32;scalar=64"
 LARGEST_LABEL = 2**31 - 1
+_ROWS = 20_000
 
 
 def format_header(kind: str, name: str, location: str, encoding: Encoding = "ascii", note: str = "") -> str:
@@ -47,7 +48,7 @@ def format_labels(labels: Ints, encoding: Encoding) -> bytes:
     """
     if encoding == "binary":
         return _binary_list(len(labels), labels.astype("<i4").tobytes())
-    return _text_list(map(str, labels.tolist()), len(labels))
+    return _text_list(len(labels), lambda rows: map(str, labels[rows].tolist()))
 
 
 def format_vectors(vectors: Floats, encoding: Encoding) -> bytes:
@@ -61,23 +62,27 @@ def format_vectors(vectors: Floats, encoding: Encoding) -> bytes:
     """
     if encoding == "binary":
         return _binary_list(len(vectors), vectors.astype("<f8").tobytes())
-    return _text_list((f"({x!r} {y!r} {z!r})" for x, y, z in vectors.tolist()), len(vectors))
+    return _text_list(len(vectors), lambda rows: (f"({x!r} {y!r} {z!r})" for x, y, z in vectors[rows].tolist()))
 
 
 def format_scalars(scalars: Floats, encoding: Encoding) -> bytes:
     """Give a list of scalars."""
     if encoding == "binary":
         return _binary_list(len(scalars), scalars.astype("<f8").tobytes())
-    return _text_list(map(repr, scalars.tolist()), len(scalars))
+    return _text_list(len(scalars), lambda rows: map(repr, scalars[rows].tolist()))
 
 
 def format_faces(corners: Ints, offsets: Ints, encoding: Encoding) -> bytes:
     """Give a list of polygons: `faceList` in text, `faceCompactList` (offsets, then corners) in binary."""
     if encoding == "binary":
         return format_labels(offsets, encoding) + format_labels(corners, encoding)
-    text, starts = list(map(str, corners.tolist())), offsets.tolist()
-    polygons = (text[a:b] for a, b in pairwise(starts))
-    return _text_list((f"{len(polygon)}({' '.join(polygon)})" for polygon in polygons), len(starts) - 1)
+
+    def polygons(rows: slice) -> Iterable[str]:
+        starts = offsets[rows.start : rows.stop + 1]
+        text = list(map(str, corners[starts[0] : starts[-1]].tolist()))
+        return (f"{b - a}({' '.join(text[a:b])})" for a, b in pairwise((starts - starts[0]).tolist()))
+
+    return _text_list(len(offsets) - 1, polygons)
 
 
 def _binary_list(count: int, content: bytes) -> bytes:
@@ -85,6 +90,9 @@ def _binary_list(count: int, content: bytes) -> bytes:
     return b"%d\n(" % count + content + b")\n" if count else b"0\n"
 
 
-def _text_list(rows: Iterable[str], count: int) -> bytes:
-    lines = "\n".join(rows)
-    return f"{count}\n(\n{lines}\n)\n".encode() if count else b"0\n(\n)\n"
+def _text_list(count: int, lines: Callable[[slice], Iterable[str]]) -> bytes:
+    # a piece at a time: as text, numbers take ten times the memory that they do in an array
+    pieces = [f"{count}\n(\n".encode()]
+    for start in range(0, count, _ROWS):
+        pieces.append(("\n".join(lines(slice(start, min(start + _ROWS, count)))) + "\n").encode())
+    return b"".join([*pieces, b")\n"])

@@ -1,0 +1,1 @@
+"""Timings that the documentation quotes: `make bench`."""
