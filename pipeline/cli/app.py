@@ -120,6 +120,43 @@ def predict(
 
 
 @app.command
+def tune(
+    case: Path,
+    *,
+    target: Annotated[tuple[str, ...], Parameter(negative="", consume_multiple=False)] = (),
+    seeds: int = 8,
+    keep: Annotated[tuple[str, ...], Parameter(negative="", consume_multiple=False)] = (),
+    set_: Annotated[tuple[str, ...], Parameter(name=["--set", "-s"], negative="", consume_multiple=False)] = (),
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    quiet: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Find the relaxation slope, spacing and coverage with which a layered mat has what was measured on a filter.
+
+    Prints the keys for the case file, and what mats of these settings measure over several seeds.
+
+    Parameters
+    ----------
+    case
+        The case file (TOML), with a layered mat; its fiber diameter and its plan stay.
+    target
+        What was measured: ``--target solidity=0.08``, thickness, coverage, pressure_drop or efficiency. One or two.
+    seeds
+        How many mats every step looks at.
+    keep
+        Leave this key as the case has it: relaxation_slope or spacing. May be repeated.
+    set_
+        Override a key of the case file: ``--set mat.side="50 um"``. May be repeated.
+    as_json
+        Print JSON with SI numbers instead of TOML and a table.
+    quiet
+        Print the keys for the case file only.
+    """
+    from pipeline.cli.tuning import tune_case
+
+    tune_case(case, target, set_, seeds, keep, as_json, quiet)
+
+
+@app.command
 def schema() -> None:
     """Print the JSON Schema of the case file."""
     from pipeline.case import Case

@@ -1,0 +1,1 @@
+"""A case run many times: keys swept, seeds repeated, means with their confidence."""
