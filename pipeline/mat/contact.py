@@ -80,39 +80,41 @@ def supports(
         if peaks[k] + above <= lowest:
             break
         reach = (radii[k] + radius + spacing) * (1.0 + _LIFT)
-        columns, rows = _images(chord, chords[k], 0, reach, period), _images(chord, chords[k], 1, reach, period)
+        columns, rows = _images(chord, chords, k, 0, reach, period), _images(chord, chords, k, 1, reach, period)
         for i in range(columns[0], columns[1]):
             for j in range(rows[0], rows[1]):
                 gap_x, gap_y = chords[k, 0] + i * period - chord[0], chords[k, 1] + j * period - chord[1]
-                other = nodes[first[k] : first[k + 1]]
+                # whole arrays with an index go in: a view per pair of fibers would cost more than most pairs do
                 if clear:
-                    found, count = _tents(chord, chords[k], gap_x, gap_y, other, reach, slope, found, count)
+                    found, count = _tents(chord, chords, k, gap_x, gap_y, nodes, first, reach, slope, found, count)
                 else:
                     height = radii[k] + radius + spacing
-                    found, count = _crossing(chord, chords[k], gap_x, gap_y, other, height, found, count)
+                    found, count = _crossing(chord, chords, k, gap_x, gap_y, nodes, first, height, found, count)
     return found[:count]
 
 
 @compiled
 def _crossing(
     chord: Floats,
-    other: Floats,
+    chords: Floats,
+    k: int,
     gap_x: float,
     gap_y: float,
     nodes: Floats,
+    first: Ints,
     height: float,
     found: Floats,
     count: int,
 ) -> tuple[Floats, int]:
-    """Add the paper's support, `height` above the axis where the chord crosses the other fiber in plan, if it does."""
-    cross = chord[2] * other[3] - chord[3] * other[2]
+    """Add the paper's support, `height` above the axis where the chord crosses fiber k in plan, if it does."""
+    cross = chord[2] * chords[k, 3] - chord[3] * chords[k, 2]
     if cross == 0.0:
         return found, count
-    x = (gap_x * other[3] - gap_y * other[2]) / cross
+    x = (gap_x * chords[k, 3] - gap_y * chords[k, 2]) / cross
     t = (gap_x * chord[3] - gap_y * chord[2]) / cross
-    if 0.0 <= x <= chord[4] and 0.0 <= t <= other[4]:
+    if 0.0 <= x <= chord[4] and 0.0 <= t <= chords[k, 4]:
         found = _with_room(found, count)
-        found[count, 0], found[count, 1] = x, _height(nodes, t) + height
+        found[count, 0], found[count, 1] = x, _height(nodes, first[k], first[k + 1], t) + height
         count += 1
     return found, count
 
@@ -120,16 +122,18 @@ def _crossing(
 @compiled
 def _tents(
     chord: Floats,
-    other: Floats,
+    chords: Floats,
+    k: int,
     gap_x: float,
     gap_y: float,
     nodes: Floats,
+    first: Ints,
     reach: float,
     slope: float,
     found: Floats,
     count: int,
 ) -> tuple[Floats, int]:
-    """Add supports that keep the new fiber's axis `reach` away from an earlier one, `gap_x`, `gap_y` from its start.
+    """Add supports that keep the new fiber's axis `reach` away from fiber k's, `gap_x`, `gap_y` from its start.
 
     A line that falls with the slope passes clear over a point of the earlier axis at (xi, z), rho beside the chord,
     if it stays above the disc of radius sqrt(R^2 - rho^2) there. Over a straight piece, the height of that line at the
@@ -140,16 +144,17 @@ def _tents(
     """
     # along and across the chord: where the earlier fiber starts, and how fast it goes
     xi_start, rho_start = chord[2] * gap_x + chord[3] * gap_y, chord[2] * gap_y - chord[3] * gap_x
-    along, across = chord[2] * other[2] + chord[3] * other[3], chord[2] * other[3] - chord[3] * other[2]
-    begin, end = _stretch(rho_start, across, -reach, reach, 0.0, other[4])
+    along = chord[2] * chords[k, 2] + chord[3] * chords[k, 3]
+    across = chord[2] * chords[k, 3] - chord[3] * chords[k, 2]
+    begin, end = _stretch(rho_start, across, -reach, reach, 0.0, chords[k, 4])
     if begin > end:
         return found, count
     begin, end = _stretch(xi_start, along, -reach, chord[4] + reach, begin, end)
     if begin > end:
         return found, count
     steep = np.sqrt(1.0 + slope * slope)
-    node = _segment(nodes, begin)
-    while node < len(nodes) - 1 and nodes[node, 0] <= end:
+    node = _segment(nodes, first[k], first[k + 1], begin)
+    while node < first[k + 1] - 1 and nodes[node, 0] <= end:
         t0, t1 = max(begin, nodes[node, 0]), min(end, nodes[node + 1, 0])
         rise = (nodes[node + 1, 1] - nodes[node, 1]) / (nodes[node + 1, 0] - nodes[node, 0])
         cuts = max(1, int(np.ceil((t1 - t0) * abs(along) / (4.0 * reach))))
@@ -211,9 +216,9 @@ def _stretch(start: float, rate: float, low: float, high: float, begin: float, e
 
 
 @compiled
-def _segment(nodes: Floats, t: float) -> int:
-    """Node at which the segment starts that holds the place `t` along its fiber."""
-    low, high = 0, len(nodes) - 1
+def _segment(nodes: Floats, low: int, high: int, t: float) -> int:
+    """Node at which the segment starts that holds the place `t`, of the fiber with the nodes `low` up to `high`."""
+    high -= 1
     while high - low > 1:
         middle = (low + high) // 2
         if nodes[middle, 0] <= t:
@@ -224,20 +229,20 @@ def _segment(nodes: Floats, t: float) -> int:
 
 
 @compiled
-def _height(nodes: Floats, t: float) -> float:
-    node = _segment(nodes, t)
+def _height(nodes: Floats, low: int, high: int, t: float) -> float:
+    node = _segment(nodes, low, high, t)
     share = (t - nodes[node, 0]) / (nodes[node + 1, 0] - nodes[node, 0])
     height: float = nodes[node, 1] + share * (nodes[node + 1, 1] - nodes[node, 1])
     return height
 
 
 @compiled
-def _images(chord: Floats, other: Floats, axis: int, reach: float, period: float) -> tuple[int, int]:
-    """First and one past the last period by which the other fiber may come within reach of the chord along an axis."""
+def _images(chord: Floats, chords: Floats, k: int, axis: int, reach: float, period: float) -> tuple[int, int]:
+    """First and one past the last period by which fiber k may come within reach of the chord along an axis."""
     if period == 0.0:
         return 0, 1
-    far = 0.5 * (chord[4] + other[4]) + reach
-    gap = other[axis] + 0.5 * other[4] * other[2 + axis] - chord[axis] - 0.5 * chord[4] * chord[2 + axis]
+    far = 0.5 * (chord[4] + chords[k, 4]) + reach
+    gap = chords[k, axis] + 0.5 * chords[k, 4] * chords[k, 2 + axis] - chord[axis] - 0.5 * chord[4] * chord[2 + axis]
     return int(np.ceil((-far - gap) / period)), int(np.floor((far - gap) / period)) + 1
 
 
