@@ -90,7 +90,7 @@ def height_at(share: float, nodes: Floats, axis: np.intp) -> float:
 
 def thick(contact: str) -> Mat:
     """A mat of so many fibers that those far below are left out, and so wide that some of them still matter."""
-    asked = {"side": 200e-6, "fiber_diameter": 1e-6, "relaxation_slope": 0.15, "stop": {"count": 1500}}
+    asked = {"side": 1e-3, "fiber_diameter": 1e-6, "relaxation_slope": 0.15, "stop": {"count": 1300}}
     return generate(LayeredSettings.model_validate(asked | {"contact": contact}))
 
 
@@ -119,6 +119,18 @@ def test_in_a_thick_mat_of_the_paper_no_fiber_sinks_under_one_that_it_crosses() 
                 least = min(least, heights[0] - heights[1])
     # some rest on each other: the least difference is the diameter itself
     assert least == pytest.approx(1e-6, rel=1e-6)
+
+
+@pytest.mark.parametrize("contact", ["paper", "clear"])
+def test_an_old_fiber_at_the_bottom_still_bears_where_the_new_ones_do_not_lie(contact: Any) -> None:
+    # the oldest fiber lies alone on the ground, 1500 newer ones high up on one heap beside it
+    pile = Pile()
+    for x, z in [(80.0, 0.5)] + 1500 * [(20.0, 10.0)]:
+        ends = np.array([[x, 0.0], [x, 100.0]])
+        pile.add(ends, as_chord(ends), 0.5, np.array([[0.0, z], [100.0, z]]))
+    nodes = drop(pile, as_chord(np.array([[0.0, 50.0], [100.0, 50.0]])), 0.5, 1.0, contact, 0.0)
+    over = 1.0 if contact == "paper" else math.sqrt(2)
+    assert np.interp([20, 50, 80], nodes[:, 0], nodes[:, 1]) == pytest.approx([10 + over, 0.5, 0.5 + over])
 
 
 def over_one(angle: float, slope: float, contact: Any) -> Floats:
