@@ -1,4 +1,5 @@
 import re
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -6,8 +7,9 @@ import pytest
 
 from pipeline.data import FaceMesh, Patch, TetMesh
 from pipeline.errors import StageError
+from pipeline.export import export
 from pipeline.export.openfoam import read_openfoam, write_openfoam
-from pipeline.export.settings import Encoding, ExportSettings
+from pipeline.export.settings import Encoding, ExportSettings, Format
 from tests.openfoam import AIR, figures, foam, patches
 from tests.sample_meshes import duct
 
@@ -108,3 +110,17 @@ def test_writing_twice_gives_the_same_bytes(mesh: FaceMesh, tmp_path: Path) -> N
     assert len(files) == len(sorted((tmp_path / "two").rglob("*"))) - 4  # less its folders
     for file in files:
         assert (tmp_path / "one" / file).read_bytes() == (tmp_path / "two" / file).read_bytes(), file
+
+
+@pytest.mark.parametrize(
+    ("kind", "encoding"),
+    [("openfoam", "binary"), ("openfoam", "ascii"), ("fluent", "ascii"), ("su2", "ascii"), ("vtk", "binary")],
+)
+def test_writing_takes_less_than_four_times_the_mesh_s_memory(kind: Format, encoding: Encoding, tmp_path: Path) -> None:
+    mesh = duct((13, 13, 26), hole=False).face_mesh()
+    own = sum(getattr(mesh, name).nbytes for name in ("points", "corners", "offsets", "owner", "neighbour"))
+    tracemalloc.start()
+    export(mesh, tmp_path, ExportSettings(formats=(kind,), encoding=encoding), AIR, "symmetry")
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 4 * own
