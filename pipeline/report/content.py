@@ -1,0 +1,47 @@
+"""What a page may show of a run: every part but the case may be missing."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pipeline.case import Case
+from pipeline.data import Comparison, FluidDomain, Mat, QualityReport, Solution, Surface, TetMesh
+from pipeline.mat import MatMeasures
+from pipeline.tetmesh import TetmeshMeasures
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ReportContent:
+    """The nouns of a run, as far as it went.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the run, as commands on the page should name it; its last part is the run's name.
+    case : Case
+    mat, mat_measures, surface, domain, mesh, mesh_measures, quality, comparison, solution : optional
+        What the stages made.
+    manifests : dict of str to dict
+        By stage, in the order of the line: what made it.
+    left_out : tuple of str
+        Stages whose results are there, but of another case or of another state of an earlier stage.
+    """
+
+    folder: Path
+    case: Case
+    mat: Mat | None = None
+    mat_measures: MatMeasures | None = None
+    surface: Surface | None = None
+    domain: FluidDomain | None = None
+    mesh: TetMesh | None = None
+    mesh_measures: TetmeshMeasures | None = None
+    quality: QualityReport | None = None
+    comparison: Comparison | None = None
+    solution: Solution | None = None
+    manifests: dict[str, dict[str, Any]] = field(default_factory=dict)
+    left_out: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """Name of the run."""
+        return self.folder.resolve().name
