@@ -445,9 +445,10 @@ class Metric:
 class QualityReport:
     """What the mesh is like and whether it may go to a solver.
 
-    `verdict` is ``"pass"`` where every limit holds, ``"warn"`` where the only trouble is faces above the limit of
-    non-orthogonality but below 90 degrees, which solvers take with a loss of accuracy, and ``"fail"`` otherwise;
-    `reasons` has a sentence for each limit that does not hold. `patches` counts faces, `volume` is in m3.
+    `verdict` is ``"pass"`` where every limit holds; ``"warn"`` where what does not hold costs accuracy but stops no
+    solver (non-orthogonality below 90 degrees, and what only ``checkMesh -allGeometry`` looks at: determinant, face
+    weight, volume ratio); ``"fail"`` where plain `checkMesh` fails too. `reasons` has a sentence for each limit that
+    does not hold. `patches` counts faces, `volume` is in m3.
     """
 
     cells: int

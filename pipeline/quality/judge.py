@@ -19,26 +19,29 @@ USELESS_ANGLE = 90.0
 
 @dataclass(frozen=True, slots=True)
 class _Definition:
+    # mild: a breach costs accuracy, but plain `checkMesh` says "Mesh OK" and solvers run
+
     compute: Callable[[FaceMesh, Polyhedra], Floats]
     where: str
     worst_is: str
     unit: str = "1"
     fixed_limit: float | None = None
     source: str = "OpenFOAM checkMesh"
+    mild: bool = False
 
 
 _DEFINITIONS = {
-    "non_orthogonality": _Definition(definitions.non_orthogonality, "internal faces", "largest", "degree"),
+    "non_orthogonality": _Definition(definitions.non_orthogonality, "internal faces", "largest", "degree", mild=True),
     "skewness": _Definition(definitions.skewness, "faces", "largest"),
     "aspect_ratio": _Definition(definitions.aspect_ratio, "cells", "largest"),
     "determinant": _Definition(
-        definitions.determinant, "cells", "smallest", source="OpenFOAM checkMesh -allGeometry"
+        definitions.determinant, "cells", "smallest", source="OpenFOAM checkMesh -allGeometry", mild=True
     ),
     "face_weight": _Definition(
-        definitions.face_weight, "internal faces", "smallest", source="OpenFOAM checkMesh -allGeometry"
+        definitions.face_weight, "internal faces", "smallest", source="OpenFOAM checkMesh -allGeometry", mild=True
     ),
     "volume_ratio": _Definition(
-        definitions.volume_ratio, "internal faces", "smallest", source="OpenFOAM checkMesh -allGeometry"
+        definitions.volume_ratio, "internal faces", "smallest", source="OpenFOAM checkMesh -allGeometry", mild=True
     ),
     "volume": _Definition(definitions.volume, "cells", "smallest", "m3", 0.0),
     "face_area": _Definition(definitions.face_area, "faces", "smallest", "m2", 0.0),
@@ -77,8 +80,8 @@ def judge(mesh: FaceMesh, settings: QualitySettings | None = None, progress: Pro
         metric = _summary(name, definition, values, getattr(settings, name, definition.fixed_limit), shape)
         found[name] = metric
         if metric.over_limit:
-            mild = name == "non_orthogonality" and metric.max < USELESS_ANGLE
-            (warnings if mild else reasons).append(_sentence(metric))
+            useless = name == "non_orthogonality" and metric.max >= USELESS_ANGLE
+            (warnings if definition.mild and not useless else reasons).append(_sentence(metric))
     verdict = "fail" if reasons else "warn" if warnings else "pass"
     return QualityReport(
         cells=mesh.cells,

@@ -35,7 +35,7 @@ def summary(report: QualityReport) -> str:
     """
     words = {
         "pass": "every limit holds",
-        "warn": "usable, with a loss of accuracy at a few faces",
+        "warn": "usable, with a loss of accuracy where a limit does not hold",
         "fail": "not fit for a solver",
     }
     size = f"{report.cells:,} cells, {report.points:,} points, {report.faces:,} faces"
