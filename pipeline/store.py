@@ -27,6 +27,7 @@ from pipeline.geometry.box import Box
 T = TypeVar("T")
 MANIFEST = "manifest.json"
 _PACKAGE = Path(__file__).parent
+_SOURCES = (".py", ".jinja", ".css")
 # What no change of the case can mend, only the user: the disk and its permissions.
 _DISK_TROUBLE = {errno.ENOSPC, errno.EACCES, errno.EPERM, errno.EROFS, errno.EDQUOT, errno.ENOTDIR, errno.EFBIG}
 
@@ -47,7 +48,7 @@ def code_digest(rooms: tuple[str, ...]) -> str:
     """SHA-256 of the sources that a stage runs: its rooms and what all stages share."""
     sources: list[Path] = [_PACKAGE / "data.py"]
     for room in ("geometry", *rooms):
-        sources += sorted((_PACKAGE / room).rglob("*.py"))
+        sources += sorted(path for path in (_PACKAGE / room).rglob("*") if path.suffix in _SOURCES)
     lines = [f"{source.relative_to(_PACKAGE).as_posix()} {file_digest(source)}" for source in sources]
     return hashlib.sha256("\n".join(lines).encode()).hexdigest()
 
