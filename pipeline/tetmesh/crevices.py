@@ -15,7 +15,7 @@ from pipeline.geometry.adjacency import neighbors
 from pipeline.geometry.tets import boundary
 
 
-def in_crevice(tets: Ints, vertices: int, faulty: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+def in_crevice(tets: Ints, vertices: int, faulty: npt.NDArray[np.bool_], stuck: bool) -> npt.NDArray[np.bool_]:
     """Find the faulty cells that lie in the tip of a wedge.
 
     Parameters
@@ -25,19 +25,23 @@ def in_crevice(tets: Ints, vertices: int, faulty: npt.NDArray[np.bool_]) -> npt.
         Number of vertices.
     faulty : (m,) bool array
         Cells that a solver would find fault with.
+    stuck : bool
+        Whether mending has given up: then every faulty cell with a face on the boundary is in a tip; before, only
+        those whose every vertex lies on the boundary too.
 
     Returns
     -------
     (m,) bool array
-        Those with a face on the boundary and every vertex on it.
     """
     faces, cell = boundary(tets)
-    on_boundary = np.zeros(vertices, dtype=bool)
-    on_boundary[faces] = True
     touching = np.zeros(len(tets), dtype=bool)
     touching[cell] = True
-    result: npt.NDArray[np.bool_] = faulty & touching & on_boundary[tets].all(axis=1)
-    return result
+    tip: npt.NDArray[np.bool_] = faulty & touching
+    if not stuck:
+        on_boundary = np.zeros(vertices, dtype=bool)
+        on_boundary[faces] = True
+        tip &= on_boundary[tets].all(axis=1)
+    return tip
 
 
 def largest_part(tets: Ints) -> npt.NDArray[np.bool_]:

@@ -16,6 +16,8 @@ from pipeline.data import Floats, Ints
 from pipeline.geometry.adjacency import cells_at_vertices, neighbors
 from pipeline.geometry.tets import FACES, volumes
 
+Vector = tuple[float, float, float]
+
 _AIM_ANGLE = math.radians(68.0)  # under the usual limit of 70 degrees, by what rounding and neighbors may cost
 _AIM_SKEWNESS = 3.5  # under the usual limit of 4
 _AIM_WEIGHT = 0.06  # above the usual limit of 0.05; for tetrahedra it bounds their volume ratio too
@@ -28,51 +30,78 @@ _LARGEST_STEP = 0.35  # of the mean edge length at the vertex
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
+def _corner(points: Floats, tets: Ints, cell: int, k: int) -> Vector:
+    vertex = tets[cell, k]
+    return (points[vertex, 0], points[vertex, 1], points[vertex, 2])
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _center(points: Floats, tets: Ints, cell: int) -> Vector:
+    x = y = z = 0.0
+    for k in range(4):
+        vertex = tets[cell, k]
+        x += points[vertex, 0]
+        y += points[vertex, 1]
+        z += points[vertex, 2]
+    return (0.25 * x, 0.25 * y, 0.25 * z)
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _minus(a: Vector, b: Vector) -> Vector:
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _dot(a: Vector, b: Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _cross(a: Vector, b: Vector) -> Vector:
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
 def _fault(points: Floats, tets: Ints, across: Ints, cell: int, side: int) -> float:
     """How far the face of a cell is beyond what is aimed at; 1 is the aim, above it is a fault."""
     other = across[cell, side]
     if other < 0:
         return 0.0
-    center = np.zeros(3)
-    beyond = np.zeros(3)
-    for k in range(4):
-        center += 0.25 * points[tets[cell, k]]
-        beyond += 0.25 * points[tets[other, k]]
-    a = points[tets[cell, FACES[side, 0]]]
-    b = points[tets[cell, FACES[side, 1]]]
-    c = points[tets[cell, FACES[side, 2]]]
-    normal = np.cross(b - a, c - a)
-    area = math.sqrt(normal @ normal)
-    if area == 0.0:
+    center = _center(points, tets, cell)
+    line = _minus(_center(points, tets, other), center)
+    a = _corner(points, tets, cell, FACES[side, 0])
+    b = _corner(points, tets, cell, FACES[side, 1])
+    c = _corner(points, tets, cell, FACES[side, 2])
+    normal = _cross(_minus(b, a), _minus(c, a))
+    area = math.sqrt(_dot(normal, normal))
+    along = _dot(normal, line)  # times the area, as the heights below
+    if area == 0.0 or along <= 0.0:
         return _HOPELESS
-    normal /= area
-    line = beyond - center
-    distance = math.sqrt(line @ line)
-    along = normal @ line
-    if along <= 0.0 or distance == 0.0:
+    sideways = _cross(normal, line)
+    angle = math.atan2(math.sqrt(_dot(sideways, sideways)), along)
+    middle = ((a[0] + b[0] + c[0]) / 3.0, (a[1] + b[1] + c[1]) / 3.0, (a[2] + b[2] + c[2]) / 3.0)
+    inward = _minus(middle, center)
+    height = _dot(normal, inward)
+    share = height / along
+    if share <= 0.0 or share >= 1.0:
         return _HOPELESS
-    across_line = np.cross(normal, line)
-    angle = math.atan2(math.sqrt(across_line @ across_line), along)
-    middle = (a + b + c) / 3.0
-    inward = middle - center
-    height = normal @ inward
-    aside = inward - (height / along) * line
-    skew = math.sqrt(aside @ aside)
-    reach = 0.2 * distance
+    aside = (inward[0] - share * line[0], inward[1] - share * line[1], inward[2] - share * line[2])
+    skew = math.sqrt(_dot(aside, aside))
+    reach = 0.2 * math.sqrt(_dot(line, line))
     if skew > 0.0:
         for corner in (a, b, c):
-            reach = max(reach, abs((aside @ (corner - middle)) / skew))
-    weight = min(height, along - height) / along
-    worst = max(angle / _AIM_ANGLE, skew / reach / _AIM_SKEWNESS)
-    return max(worst, _AIM_WEIGHT / weight) if weight > 0.0 else _HOPELESS
+            reach = max(reach, abs(_dot(aside, _minus(corner, middle))) / skew)
+    weight = min(share, 1.0 - share)
+    return float(max(angle / _AIM_ANGLE, skew / reach / _AIM_SKEWNESS, _AIM_WEIGHT / weight))
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
 def _flatness(points: Floats, tets: Ints, cell: int, smallest: float) -> float:
     """0 for a cell of at least the smallest volume, else above every fault, and the more the worse it is inverted."""
-    a = points[tets[cell, 0]]
-    volume = np.cross(points[tets[cell, 1]] - a, points[tets[cell, 2]] - a) @ (points[tets[cell, 3]] - a)
-    return 0.0 if volume >= smallest else 1e6 * (2.0 - volume / smallest)
+    a = _corner(points, tets, cell, 0)
+    base = _cross(_minus(_corner(points, tets, cell, 1), a), _minus(_corner(points, tets, cell, 2), a))
+    volume = _dot(base, _minus(_corner(points, tets, cell, 3), a))
+    return 0.0 if volume >= smallest else 10.0 * _HOPELESS * (2.0 - volume / smallest)
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
@@ -80,24 +109,26 @@ def _indeterminacy(points: Floats, tets: Ints, across: Ints, cell: int) -> float
     """Fault of a cell whose inner faces are too nearly parallel to carry a gradient; 1 is the aim."""
     inner = 0
     total = 0.0
-    tensor = np.zeros((3, 3))
+    xx = xy = xz = yy = yz = zz = 0.0
     for side in range(4):
         if across[cell, side] < 0:
             continue
-        a = points[tets[cell, FACES[side, 0]]]
-        normal = 0.5 * np.cross(points[tets[cell, FACES[side, 1]]] - a, points[tets[cell, FACES[side, 2]]] - a)
+        a = _corner(points, tets, cell, FACES[side, 0])
+        b = _minus(_corner(points, tets, cell, FACES[side, 1]), a)
+        x, y, z = _cross(b, _minus(_corner(points, tets, cell, FACES[side, 2]), a))
         inner += 1
-        total += math.sqrt(normal @ normal)
-        for i in range(3):
-            for j in range(3):
-                tensor[i, j] += normal[i] * normal[j]
+        total += math.sqrt(x * x + y * y + z * z)
+        xx += x * x
+        xy += x * y
+        xz += x * z
+        yy += y * y
+        yz += y * z
+        zz += z * z
     if inner < 3 or total == 0.0:
         return 0.0  # no move of a vertex can help: `corners` splits such cells
-    determinant = abs(
-        tensor[0, 0] * (tensor[1, 1] * tensor[2, 2] - tensor[1, 2] * tensor[2, 1])
-        - tensor[0, 1] * (tensor[1, 0] * tensor[2, 2] - tensor[1, 2] * tensor[2, 0])
-        + tensor[0, 2] * (tensor[1, 0] * tensor[2, 1] - tensor[1, 1] * tensor[2, 0])
-    ) / (8.0 * (total / inner) ** 6)
+    size = (total / inner) ** 2
+    xx, xy, xz, yy, yz, zz = xx / size, xy / size, xz / size, yy / size, yz / size, zz / size
+    determinant = abs(xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)) / 8.0
     return min(_HOPELESS, math.sqrt(_AIM_DETERMINANT / max(determinant, 1e-30)))
 
 
@@ -118,14 +149,13 @@ def _cost_around(
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
-def _faults(points: Floats, tets: Ints, across: Ints, smallest: float) -> Floats:
-    """Per cell, its flatness or the worst fault of its faces."""
-    fault = np.zeros(len(tets))
-    for cell in range(len(tets)):
-        fault[cell] = max(_flatness(points, tets, cell, smallest), _indeterminacy(points, tets, across, cell))
+def _update(points: Floats, tets: Ints, across: Ints, which: Ints, smallest: float, faults: Floats) -> None:
+    """Measure some cells again: the flatness of each, or the worst fault of it and its faces."""
+    for cell in which:
+        worst = max(_flatness(points, tets, cell, smallest), _indeterminacy(points, tets, across, cell))
         for side in range(4):
-            fault[cell] = max(fault[cell], _fault(points, tets, across, cell, side))
-    return fault
+            worst = max(worst, _fault(points, tets, across, cell, side))
+        faults[cell] = worst
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
@@ -141,36 +171,37 @@ def _move(
     free: Floats,
     directions: Floats,
     smallest: float,
-) -> int:
-    moved = 0
-    for vertex in vertices:
+) -> Ints:
+    """Move the vertices one by one; give those that moved."""
+    moved = np.zeros(len(vertices), dtype=np.bool_)
+    for number, vertex in enumerate(vertices):
         if leash[vertex] == 0.0 or free[vertex].max() == 0.0:
             continue
         best = _cost_around(points, tets, across, first, cells, vertex, smallest, math.inf)
+        if best == 0.0:
+            continue
         place = points[vertex].copy()
         length, count = 0.0, 0
         for k in range(first[vertex], first[vertex + 1]):
             for j in range(4):
                 edge = points[tets[cells[k], j]] - place
-                length += math.sqrt(edge @ edge)
+                length += math.sqrt((edge**2).sum())
                 count += 1
         reach = min(_LARGEST_STEP * length / (0.75 * count), leash[vertex])
-        better = False
         for trial in range(len(directions)):
             points[vertex] = place + reach * free[vertex] * directions[trial]
             stray = points[vertex] - homes[vertex]
-            if stray @ stray > leash[vertex] ** 2:
+            if (stray**2).sum() > leash[vertex] ** 2:
                 continue
             cost = _cost_around(points, tets, across, first, cells, vertex, smallest, best)
             if cost < best:
                 best = cost
                 place = points[vertex].copy()
-                better = True
+                moved[number] = True
             elif trial % 8 == 7:
                 reach *= 0.6
         points[vertex] = place
-        moved += better
-    return moved
+    return vertices[moved]
 
 
 def mended(
@@ -205,15 +236,16 @@ def mended(
     rng = np.random.default_rng(seed)
     smallest = _SMALLEST * float(np.median(6.0 * volumes(result, tets)))
     homes = result.copy()
-    faults = _faults(result, tets, across, smallest)
+    faults = np.zeros(len(tets))
+    _update(result, tets, across, np.arange(len(tets)), smallest, faults)
     for _ in range(sweeps):
-        faulty = faults > 1.0
-        if not faulty.any():
-            break
         directions = rng.standard_normal((_TRIALS, 3))
         directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-        vertices = np.unique(tets[faulty])
-        if _move(result, tets, across, first, cells, vertices, homes, leash, free, directions, smallest) == 0:
+        vertices = np.unique(tets[faults > 1.0])
+        moved = _move(result, tets, across, first, cells, vertices, homes, leash, free, directions, smallest)
+        if len(moved) == 0:
             break
-        faults = _faults(result, tets, across, smallest)
+        touched = np.unique(np.concatenate([cells[first[vertex] : first[vertex + 1]] for vertex in moved]))
+        beside = across[touched]
+        _update(result, tets, across, np.union1d(touched, beside[beside >= 0]), smallest, faults)
     return result, faults > 1.0

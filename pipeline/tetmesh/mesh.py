@@ -21,7 +21,8 @@ from pipeline.tetmesh.settings import TetmeshSettings
 from pipeline.tetmesh.size_field import size_field
 
 _SWEEPS = 20  # of mending; the last of them move next to nothing
-_FILLINGS = 4  # rounds of mending and filling crevices; on real mats the third finds nothing
+_FILLINGS = 6  # rounds of mending and filling crevices
+_PATIENCE = 3  # rounds before cells that cannot be mended are filled though a vertex of theirs could move
 _WALL_LEASH = 0.5  # envelopes that mending may move a vertex of a fiber
 _MEMORY_SHARE = 0.85  # of the machine's memory, where the case names no limit
 
@@ -96,11 +97,11 @@ def tetrahedralize(
     tell("mending the worst cells")
     leash = _WALL_LEASH * settings.envelope * unit
     filled = 0.0
-    for _ in range(_FILLINGS):
+    for filling in range(_FILLINGS):
         tets = tets[largest_part(tets)]
         points, tets = split_corners(points, tets)
         points, faulty = _mended(points, tets, domain, leash)
-        crevice = in_crevice(tets, len(points), faulty)
+        crevice = in_crevice(tets, len(points), faulty, stuck=filling >= _PATIENCE)
         if not crevice.any():
             break
         filled += float(volumes(points, tets[crevice]).sum())
