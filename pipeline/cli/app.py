@@ -157,6 +157,77 @@ def tune(
 
 
 @app.command
+def study(
+    study: Path,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+    plot: Path | None = None,
+    quiet: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Run a case many times, with keys swept and seeds repeated, and tell means with 95 % confidence intervals.
+
+    Finished runs are kept: the same command continues a study that was stopped, and tries failed runs again.
+
+    Parameters
+    ----------
+    study
+        The study file (TOML); docs/studies.md describes it.
+    workers
+        Processes of this machine, as many as it has cores unless given; or jobs of SLURM.
+    scheduler
+        Address of a running dask scheduler, whose workers see the folder under the same path; or ``slurm``.
+    out
+        Folder of the study; ``runs/studies/<name of the study file>`` if left out.
+    plot
+        Draw the plot into this file (svg, png or pdf) instead of ``plot.svg`` in the folder.
+    quiet
+        Print nothing but errors.
+    """
+    from pipeline.cli.studying import run_study
+
+    run_study(study, out or Path("runs/studies") / study.stem, workers, scheduler, plot, quiet)
+
+
+@app.command
+def report(run: Path, *, quiet: Annotated[bool, Parameter(negative="")] = False) -> None:
+    """Write report.html of a run: what was made, whether to trust it, what to do next.
+
+    The page holds its pictures and asks nothing of the network. A run writes it at its end; this writes it again, or
+    for a run that stopped half way.
+
+    Parameters
+    ----------
+    run
+        The folder of a run, whole or partial.
+    quiet
+        Print nothing but errors.
+    """
+    from pipeline.cli.viewing import write_page
+
+    write_page(run, quiet)
+
+
+@app.command
+def view(run: Path, *, scene: str | None = None, screenshot: Path | None = None) -> None:
+    """Look at a run's geometry and mesh in a window; without a screen, draw every view into RUN/pictures.
+
+    Parameters
+    ----------
+    run
+        The folder of a run, whole or partial.
+    scene
+        One view: mat-top, mat-side, duct, cut, close-up, cells, mesh-fibers or worst.
+    screenshot
+        Draw the view (duct unless another is named) into this file, png or jpg, instead of opening a window.
+    """
+    from pipeline.cli.viewing import view_run
+
+    view_run(run, scene, screenshot)
+
+
+@app.command
 def schema() -> None:
     """Print the JSON Schema of the case file."""
     from pipeline.case import Case

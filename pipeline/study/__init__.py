@@ -1,1 +1,6 @@
 """A case run many times: keys swept, seeds repeated, means with their confidence."""
+
+from pipeline.study.settings import Study, read_study
+from pipeline.study.study import StudyResult, carry_out_study
+
+__all__ = ["Study", "StudyResult", "carry_out_study", "read_study"]

@@ -1,0 +1,75 @@
+"""`fibertwin study`: a case run many times, and its means as a table, as CSV and as a plot."""
+
+import math
+from pathlib import Path
+
+from rich.console import Console
+
+from pipeline.cli.listen import listening
+from pipeline.cli.tables import plain_table
+from pipeline.errors import CaseError, StageError
+from pipeline.store import disk_trouble_explained
+from pipeline.study import StudyResult, carry_out_study, read_study
+from pipeline.study.settings import Study
+from pipeline.study.tables import FAILURES, shown, write_tables
+
+PLOT, PICTURES = "plot.svg", "pictures.png"
+
+
+def run_study(
+    path: Path, folder: Path, workers: int | None, scheduler: str | None, plot: Path | None, quiet: bool
+) -> None:
+    """Run a study file and print what came of it."""
+    if workers is not None and workers < 1:
+        raise CaseError(f"--workers {workers}: one or more")
+    study = read_study(path)
+    out = Console()
+    with listening(out, quiet) as tell:
+        result = carry_out_study(study, folder, workers, scheduler, tell)
+        with disk_trouble_explained(folder):
+            written = write_tables(result, folder)
+            written += _drawn(study, result, folder, plot)
+    if not quiet:
+        out.print(plain_table("mean +- half width of its 95 % confidence interval", *_table(result)))
+        out.print(
+            f"{result.runs} runs: {result.made} made, {result.reused} kept from before, {result.failed} failed",
+            *(f"  {name}" for name in written),
+            sep="\n",
+            markup=False,
+            highlight=False,
+            soft_wrap=True,
+        )
+    if result.failed == result.runs:
+        raise StageError(f"all {result.runs} runs failed; {folder / FAILURES} says why")
+
+
+def _drawn(study: Study, result: StudyResult, folder: Path, plot: Path | None) -> list[Path]:
+    written = []
+    if any(each.n for point in result.points for each in point.estimates):
+        from pipeline.analytics.plots import save_figure
+        from pipeline.study.plot import plot_study
+
+        save_figure(plot_study(result), plot or folder / PLOT)
+        written.append(plot or folder / PLOT)
+    if study.picture:
+        from pipeline.study.pictures import draw_points
+
+        draw_points(study, folder / PICTURES)
+        written.append(folder / PICTURES)
+    return written
+
+
+def _table(result: StudyResult) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    columns = (*result.keys, "failed", *(quantity.label for quantity in result.quantities))
+    rows = []
+    for point in result.points:
+        numbers = [
+            "-"
+            if math.isnan(each.mean)
+            else f"{each.mean:.4g}"
+            if math.isnan(each.half_width)
+            else f"{each.mean:.4g} +- {each.half_width:.2g}"
+            for each in point.estimates
+        ]
+        rows.append((*(shown(point.settings[key]) for key in result.keys), str(point.failed), *numbers))
+    return columns, rows
