@@ -1,5 +1,7 @@
 """The line: one noun in, one noun out per stage, each result kept on disk and reused while it holds."""
 
+import resource
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,17 +12,18 @@ from pipeline import store
 from pipeline.analytics import compare, predictor
 from pipeline.analytics.growth import Predictor
 from pipeline.case import Case
-from pipeline.data import Comparison, FluidDomain, Mat, QualityReport, Surface, TetMesh
+from pipeline.data import Comparison, FluidDomain, Mat, QualityReport, Solution, Surface, TetMesh
 from pipeline.enclosure.duct import enclose
 from pipeline.errors import StageError
 from pipeline.export import export
 from pipeline.geometry.tets import volume_between
-from pipeline.mat import BoxSettings, FileSettings, LayeredSettings, generate, measure
+from pipeline.mat import BoxSettings, FileSettings, LayeredSettings, MatMeasures, generate, measure
 from pipeline.progress import Progress, silent
 from pipeline.quality import cell_fields, judge
+from pipeline.report import PAGE, ReportContent, write_report
 from pipeline.surface.files import write_surface
 from pipeline.surface.union import unite
-from pipeline.tetmesh import tetrahedralize
+from pipeline.tetmesh import TetmeshMeasures, tetrahedralize
 
 CASE = "case.json"
 """File of a run's folder that holds its case, every setting in SI."""
@@ -32,6 +35,7 @@ Counts = dict[str, object]
 class Stage:
     """One step of the line: what it needs, what else its result depends on, and how it is made.
 
+    A stage that is needed but not there, as the report of a partial run may find, takes no part in the result.
     `make` writes into a folder of its own and gives the counts for the manifest.
     """
 
@@ -104,6 +108,21 @@ class Run:
         """The pressure drops side by side."""
         return store.load_json(Comparison, self.folder / "compare" / "comparison.json")
 
+    @property
+    def solution(self) -> Solution:
+        """What the solver found."""
+        return store.load_json(Solution, self.folder / "solve" / "solution.json")
+
+    @property
+    def mat_measures(self) -> MatMeasures:
+        """The mat in numbers."""
+        return store.load_json(MatMeasures, self.folder / "mat" / "measures.json")
+
+    @property
+    def mesh_measures(self) -> TetmeshMeasures:
+        """What the mesher made of the fibers."""
+        return store.load_json(TetmeshMeasures, self.folder / "tetmesh" / "measures.json")
+
     def manifest(self, stage: str) -> dict[str, Any] | None:
         """Tell what made a finished stage; None where it is not there."""
         path = self.folder / stage / store.MANIFEST
@@ -166,6 +185,40 @@ def _make_compare(run: Run, into: Path, tell: Progress) -> Counts:
     return {"mesh_solidity": comparison.solidity["mesh"]}
 
 
+def _make_report(run: Run, into: Path, tell: Progress) -> Counts:
+    return {"page": write_report(content_of(run), into, tell).name}
+
+
+def content_of(run: Run) -> ReportContent:
+    """Collect what a run has for its page, and leave out what stands there from another case."""
+    holds: dict[str, bool] = {}
+    for stage in LINE:
+        if stage.make is not _make_report and run.manifest(stage.name) is not None:
+            holds[stage.name] = all(holds.get(need, False) for need in stage.needs) and _of_this_case(stage, run)
+    has = {name for name, fine in holds.items() if fine}
+    return ReportContent(
+        folder=run.folder,
+        case=run.case,
+        mat=run.mat if "mat" in has else None,
+        mat_measures=run.mat_measures if "mat" in has else None,
+        surface=run.surface if "surface" in has else None,
+        domain=run.domain if "enclosure" in has else None,
+        mesh=run.mesh if "tetmesh" in has else None,
+        mesh_measures=run.mesh_measures if "tetmesh" in has else None,
+        quality=run.quality if "quality" in has else None,
+        comparison=run.comparison if "compare" in has else None,
+        solution=run.solution if "solve" in has else None,
+        manifests={name: run.manifest(name) or {} for name, fine in holds.items() if fine},
+        left_out=tuple(name for name, fine in holds.items() if not fine),
+    )
+
+
+def _of_this_case(stage: Stage, run: Run) -> bool:
+    # what older code or libraries made is still a result of this case; what other settings or inputs made is not
+    made, now = run.manifest(stage.name) or {}, _identity(stage, run)
+    return all(made.get(part) == now.get(part) for part in ("file", "parameters", "inputs"))
+
+
 LINE = (
     Stage("mat", (), ("mat", "flow"), ("mat", "analytics"), ("numpy", "numba"), _make_mat),
     Stage("surface", ("mat",), ("surface",), ("surface",), ("manifold3d", "numpy"), _make_surface),
@@ -181,6 +234,14 @@ LINE = (
         _make_export,
     ),
     Stage("compare", ("mat", "surface", "tetmesh"), ("flow",), ("analytics",), ("numpy", "scipy"), _make_compare),
+    Stage(
+        "report",
+        ("mat", "surface", "enclosure", "tetmesh", "quality", "export", "compare", "solve"),
+        tuple(Case.model_fields),
+        ("report", "analytics", "quality"),
+        ("jinja2", "matplotlib", "pyvista"),
+        _make_report,
+    ),
 )
 STAGES = tuple(stage.name for stage in LINE)
 
@@ -220,6 +281,30 @@ def run(
     return outcomes
 
 
+def report(folder: Path, tell: Progress = silent) -> Path:
+    """Write the page of a run as far as the run went.
+
+    Parameters
+    ----------
+    folder : Path
+        Of a run, whole or partial.
+    tell : Progress
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    StageError
+        If the folder is no run or cannot be written.
+    """
+    this = Run.opened(folder)
+    with store.locked(folder):
+        return _step(LINE[-1], this, True, tell).folder / PAGE
+
+
 def _step(stage: Stage, run: Run, again: bool, tell: Progress) -> Outcome:
     folder = run.folder / stage.name
     identity = _identity(stage, run)
@@ -232,8 +317,15 @@ def _step(stage: Stage, run: Run, again: bool, tell: Progress) -> Outcome:
     with store.side_folder(folder) as side:
         counts = stage.make(run, side, tell)
         seconds = time.perf_counter() - began
-        store.write_manifest(side, {"stage": stage.name, "key": key, **identity, "seconds": seconds, "counts": counts})
+        cost = {"seconds": seconds, "peak_memory": _peak_memory()}
+        store.write_manifest(side, {"stage": stage.name, "key": key, **identity, **cost, "counts": counts})
     return Outcome(stage.name, folder, "made", seconds, counts)
+
+
+def _peak_memory() -> int:
+    """Most memory that this process has held so far [byte]."""
+    # Linux counts in KiB, macOS in bytes
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
 
 
 def _identity(stage: Stage, run: Run) -> dict[str, Any]:
@@ -243,7 +335,7 @@ def _identity(stage: Stage, run: Run) -> dict[str, Any]:
     return {
         **({"file": store.file_digest(source)} if source is not None and source.is_file() else {}),
         "parameters": {name: settings[name] for name in stage.settings},
-        "inputs": {name: store.digest((run.manifest(name) or {})["files"]) for name in stage.needs},
+        "inputs": {name: store.digest(made["files"]) for name in stage.needs if (made := run.manifest(name))},
         "code": store.code_digest(stage.rooms),
         "libraries": store.versions(stage.libraries),
     }

@@ -1,0 +1,72 @@
+"""`fibertwin view` and `fibertwin report`: look at a run in a window, as a picture, or as a page."""
+
+from pathlib import Path
+
+from rich.console import Console
+
+from pipeline.cli.listen import listening
+from pipeline.errors import CaseError, StageError
+from pipeline.report import subject_of
+from pipeline.report.render import Painting, screenless
+from pipeline.report.scenes import SCENES, Subject, possible, show
+from pipeline.run import Run, content_of, report
+from pipeline.store import disk_trouble_explained
+
+PICTURES = "pictures"
+"""Folder of a run that pictures go into when nobody names a file."""
+_KINDS = {".png": "png", ".jpg": "jpg", ".jpeg": "jpg"}
+_FIRST_CHOICE = "duct"
+
+
+def write_page(folder: Path, quiet: bool) -> None:
+    """Write a run's page and say where it is."""
+    out = Console()
+    with listening(out, quiet) as tell:
+        page = report(folder, tell)
+    if not quiet:
+        out.print(str(page), markup=False, highlight=False, soft_wrap=True)
+
+
+def view_run(folder: Path, scene: str | None, screenshot: Path | None) -> None:
+    """Open a window on a run, or draw pictures where a file is asked for or there is no screen."""
+    subject = subject_of(content_of(Run.opened(folder)))
+    if subject is None:
+        raise StageError(f"{folder} has no mat yet, so there is nothing to see; fibertwin run makes one")
+    there = possible(subject)
+    if scene is not None:
+        _check_scene(scene, there, folder)
+    if screenshot is not None:
+        kind = _KINDS.get(screenshot.suffix.lower())
+        if kind is None:
+            raise CaseError(f"cannot draw {screenshot}: the name must end with one of {', '.join(_KINDS)}")
+        wanted = scene or (_FIRST_CHOICE if _FIRST_CHOICE in there else there[0])
+        _draw(subject, {wanted: screenshot}, kind)
+    elif screenless():
+        names = (scene,) if scene else there
+        _draw(subject, {name: folder / PICTURES / f"{name}.png" for name in names}, "png")
+    else:
+        show(subject, scene, f"fibertwin: {folder}")
+
+
+def _check_scene(scene: str, there: tuple[str, ...], folder: Path) -> None:
+    if scene not in SCENES:
+        raise CaseError(f"there is no scene {scene!r}; the scenes are {', '.join(SCENES)}")
+    if scene not in there:
+        raise StageError(f"{folder} has not what the scene {scene!r} shows; it has {', '.join(there)}")
+
+
+def _draw(subject: Subject, files: dict[str, Path], kind: str) -> None:
+    out = Console()
+    with listening(out, False) as tell, Painting(subject, files, kind) as painting:
+        tell(f"drawing {', '.join(files)}")
+        pictures = painting.finished()
+    if pictures.trouble:
+        raise StageError(
+            f"no picture could be drawn: {pictures.trouble}; rendering needs OpenGL, without a screen through EGL or "
+            "OSMesa: on Debian, apt-get install libegl1 libgl1-mesa-dri"
+        )
+    for name, path in files.items():
+        with disk_trouble_explained(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(pictures.files[name])
+        out.print(str(path), markup=False, highlight=False, soft_wrap=True)
