@@ -2,6 +2,7 @@
 
 import difflib
 import tomllib
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -159,11 +160,16 @@ _TAGS = {"layered", "box", "array", "file", "constant", "normal", "lognormal", "
 
 
 def _known(tables: list[str]) -> list[str]:
-    schema = Case.model_json_schema()
+    schema = _schema()
     found = [schema]
     for table in tables:
         found = [branch for part in found for branch in _branches(part.get("properties", {}).get(table, {}), schema)]
     return sorted({name for part in found for name in part.get("properties", {})})
+
+
+@cache
+def _schema() -> dict[str, Any]:
+    return Case.model_json_schema()
 
 
 def _branches(part: dict[str, Any], schema: dict[str, Any]) -> list[dict[str, Any]]:

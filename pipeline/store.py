@@ -120,7 +120,7 @@ def load(kind: type[T], path: Path) -> T:
         If the file is not there or is damaged.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
             values: dict[str, Any] = {name: file[name] for name in file.files if name != "rest"}
             values |= json.loads(str(file["rest"]))
     except (OSError, ValueError, KeyError, zipfile.BadZipFile) as problem:

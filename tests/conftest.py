@@ -3,6 +3,11 @@
 import shutil
 
 import pytest
+from hypothesis import settings
+
+# a busy machine is no fault of the code's
+settings.register_profile("fibertwin", deadline=None)
+settings.load_profile("fibertwin")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
