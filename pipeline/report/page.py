@@ -61,16 +61,25 @@ def _places_of_trouble(report: QualityReport | None) -> Floats | None:
 def _page(content: ReportContent, progress: Progress) -> str:
     subject = subject_of(content)
     if subject is None:
-        return _filled(content, sections(content, progress), Pictures())
+        return filled(content, sections(content, progress), Pictures())
     # the pictures are drawn by a process of their own, the charts meanwhile by this one
     with Painting(subject, possible(subject)) as painting:
         made = sections(content, progress)
         progress("report: pictures", 0.6)
         pictures = painting.finished()
-    return _filled(content, made, pictures)
+    return filled(content, made, pictures)
 
 
-def _filled(content: ReportContent, made: dict[str, Any], pictures: Pictures) -> str:
+def filled(content: ReportContent, made: dict[str, Any], pictures: Pictures) -> str:
+    """Fill the template: everything of the content is escaped, only charts and tables are markup.
+
+    Parameters
+    ----------
+    content : ReportContent
+    made : dict
+        What `pipeline.report.sections.sections` made of it.
+    pictures : Pictures
+    """
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("pipeline.report"),
         autoescape=True,

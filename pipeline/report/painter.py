@@ -37,8 +37,7 @@ def main(folder: Path) -> None:
         picture = trimmed(Image.fromarray(plotter.screenshot(None, return_img=True)))
         plotter.close()
         if order["kind"] == "png":
-            # 256 colors are enough for lit surfaces, at a third of the size
-            picture.quantize(256, dither=Image.Dither.FLOYDSTEINBERG).save(folder / f"{name}.png", optimize=True)
+            picture.save(folder / f"{name}.png", optimize=True)
         else:
             picture.save(folder / f"{name}.jpg", quality=_QUALITY, optimize=True)
 

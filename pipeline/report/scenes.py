@@ -296,3 +296,18 @@ def _look(plotter: "pv.Plotter", box: Box, towards: tuple[float, float, float], 
 
 def _look_aslant(plotter: "pv.Plotter", box: Box) -> None:
     _look(plotter, box, towards=(0.75, 1.15, -0.85), up=(0, 0, 1))
+
+
+def show(subject: Subject, scene: str | None, title: str) -> None:
+    """Open a window on a scene, or on the mat beside the richest scene there is, and wait until it is closed."""
+    import pyvista as pv
+
+    there = possible(subject)
+    richest = next(name for name in ("cells", "duct", "mat-top") if name in there)
+    names = (scene,) if scene else tuple(dict.fromkeys(("duct" if "duct" in there else "mat-side", richest)))
+    plotter = pv.Plotter(shape=(1, len(names)), window_size=(900 * len(names), 800), title=title)
+    for column, name in enumerate(names):
+        plotter.subplot(0, column)
+        plotter.set_background(BACKGROUND)
+        SCENES[name].draw(plotter, subject)
+    plotter.show()

@@ -72,7 +72,7 @@ def _cells(report: QualityReport) -> Check:
         "warn": (
             NOTE,
             "the mesh is usable",
-            "Solvers take it; where a face is above the limit of non-orthogonality the gradient loses accuracy.",
+            "Solvers take it; where a limit is broken the answer loses accuracy.",
         ),
         "fail": (BAD, "the mesh is not fit for a solver", "It may diverge or be wrong where limits are broken."),
     }[report.verdict]

@@ -1,0 +1,65 @@
+"""A small run made by hand for pages: its mesh is no mesh of its mat, but pages tell only what they are given."""
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from pipeline.analytics import compare
+from pipeline.case import Case
+from pipeline.data import Solution, TetMesh
+from pipeline.enclosure.duct import enclose
+from pipeline.enclosure.settings import EnclosureSettings
+from pipeline.geometry.box import Box
+from pipeline.mat import LayeredSettings, Stop, generate, measure
+from pipeline.mat.settings import Constant
+from pipeline.quality import QualitySettings, judge
+from pipeline.report import ReportContent
+from pipeline.surface.settings import SurfaceSettings
+from pipeline.surface.union import unite
+from pipeline.tetmesh import TetmeshMeasures
+from tests.sample_meshes import duct
+
+MAT = LayeredSettings(
+    side=10e-6, fiber_diameter=Constant(diameter=1.4e-6), relaxation_slope=0.15, seed=3, stop=Stop(count=3)
+)
+CASE = Case(mat=MAT)
+SECTIONS = ("summary", "mat", "duct", "mesh", "quality", "comparison", "prediction", "provenance")
+SOLUTION = Solution(12.5, 1e-12, 1e-9, 1e-14, 0.001, 1e-6, 400, True, 12.0, 2)
+
+
+def small_mesh() -> TetMesh:
+    """Make a duct with a bar across it, as large as the mat is."""
+    mesh = duct(size=(10e-6, 10e-6, 20e-6), jitter=0.2)
+    box = Box((0, 0, 5e-6), (10e-6, 10e-6, 15e-6))
+    return TetMesh(mesh.points, mesh.tets, mesh.faces, mesh.patch, mesh.patches, box)
+
+
+def manifest(stage: str) -> dict[str, Any]:
+    """What `pipeline.store` writes beside a stage."""
+    return {
+        "stage": stage, "key": "a" * 64, "code": "b" * 64, "libraries": {"numpy": "2.0"}, "seconds": 1.5,
+        "peak_memory": 2**28, "counts": {"formats": ["openfoam", "vtk"]}, "files": {f"{stage}.npz": "c" * 64},
+    }  # fmt: skip
+
+
+@cache
+def _parts() -> dict[str, Any]:
+    mat, mesh = generate(MAT), small_mesh()
+    surface = unite(mat, SurfaceSettings())
+    return {
+        "mat": mat,
+        "mat_measures": measure(mat),
+        "surface": surface,
+        "domain": enclose(surface, EnclosureSettings()),
+        "mesh": mesh,
+        "mesh_measures": TetmeshMeasures(10, 20, 1e-15, 0.001, -0.01, 0.0, 0, 12.0, 2**27),
+        # a limit that no mesh keeps: there are worst faces to show
+        "quality": judge(mesh.face_mesh(), QualitySettings(non_orthogonality=5.0)),
+        "comparison": compare(mat, surface.solidity, 0.99 * surface.solidity, CASE.flow.flow()),
+        "manifests": {stage: manifest(stage) for stage in ("mat", "tetmesh", "export")},
+    }
+
+
+def whole(folder: Path = Path("runs/small"), **other: Any) -> ReportContent:
+    """Give all that a run can have but a solution; `other` replaces parts."""
+    return ReportContent(folder, CASE, **{**_parts(), **other})

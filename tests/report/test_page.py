@@ -1,0 +1,130 @@
+"""The page: what stands in it, what does not, and that it asks nothing of anybody."""
+
+import dataclasses
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pipeline.data import Mat
+from pipeline.progress import silent
+from pipeline.report import ReportContent
+from pipeline.report.page import filled
+from pipeline.report.render import Pictures
+from pipeline.report.sections import sections
+from tests.report.contents import CASE, SECTIONS, SOLUTION, whole
+from tests.report.pages import Page, read
+
+
+@pytest.fixture(scope="module")
+def content() -> ReportContent:
+    return whole()
+
+
+def html_of(content: ReportContent, trouble: str = "") -> str:
+    return filled(content, sections(content, silent), Pictures(trouble=trouble))
+
+
+@pytest.fixture(scope="module")
+def html(content: ReportContent) -> str:
+    return html_of(content)
+
+
+@pytest.fixture(scope="module")
+def page(html: str) -> Page:
+    return read(html)
+
+
+def shown(page: Page) -> set[str]:
+    return set(page.values("id")) & set(SECTIONS)
+
+
+def test_a_whole_run_has_every_section(page: Page) -> None:
+    assert shown(page) == set(SECTIONS)
+
+
+def test_a_run_of_nothing_but_its_case_still_makes_a_page() -> None:
+    page = read(html_of(ReportContent(Path("runs/new"), CASE)))
+    assert shown(page) == {"summary", "provenance"}
+    assert any("not complete" in text for text in page.text)
+
+
+def test_a_mat_alone_has_its_measures_and_its_prediction(content: ReportContent) -> None:
+    alone = ReportContent(content.folder, CASE, mat=content.mat, mat_measures=content.mat_measures)
+    assert shown(read(html_of(alone))) == {"summary", "mat", "prediction", "provenance"}
+
+
+def test_every_link_leads_to_a_place_on_the_page(page: Page) -> None:
+    places = page.values("id")
+    assert len(places) == len(set(places))
+    for tag, name, value in page.attributes:
+        if name in ("href", "src", "xlink:href"):
+            assert value.startswith("data:") or value[1:] in places, (tag, name, value)
+
+
+def test_nothing_on_the_page_comes_from_elsewhere(html: str) -> None:
+    assert not re.search(r"(https?:)?//[a-z]", html)
+    assert "@import" not in html
+    assert set(re.findall(r"url\((.)", html)) == {"#"}
+    assert {"script", "iframe", "object"}.isdisjoint(read(html).tags)
+
+
+def test_what_a_stranger_wrote_is_text_and_nothing_else(content: ReportContent) -> None:
+    evil = '<script>alert(1)</script><img src=x onerror="alert(2)">'
+    assert content.mat is not None
+    m = content.mat
+    mat = Mat(m.nodes, m.first, m.radius, m.slab, m.seed, evil, m.periodic)
+    manifests = {evil: {**content.manifests["mat"], "files": {evil: evil}, "libraries": {evil: evil}, "key": evil}}
+    changed = dataclasses.replace(
+        content, folder=Path(evil.replace("/", "")), mat=mat, manifests=manifests, left_out=(evil,)
+    )
+    page = read(html_of(changed, evil))
+    assert "script" not in page.tags
+    assert not page.values("onerror")
+    # origin, stage, file, digest, library, key, result left out, trouble: all are there for people to read
+    assert sum(text.count("alert(1)") for text in page.text) >= 8
+
+
+def test_each_metric_with_a_spread_has_its_histogram_and_its_worst_place(content: ReportContent, page: Page) -> None:
+    assert content.quality is not None
+    drawn = {value for value in page.values("id") if re.fullmatch(r"metric-\w+-figure_1", value)}
+    # every pyramid over a tetrahedron's face has a quarter of its volume: there is no histogram to draw
+    assert drawn == {f"metric-{name}-figure_1" for name in content.quality.metrics if name != "face_pyramid"}
+    worst = content.quality.metrics["non_orthogonality"].worst[0]
+    assert any(f"face {worst[0]}" in text for text in page.text)
+    assert f"{1e6 * worst[2][0]:.3f}" in page.text
+
+
+def test_a_solved_flow_is_held_against_every_model(content: ReportContent) -> None:
+    page = read(html_of(dataclasses.replace(content, solution=SOLUTION)))
+    assert content.comparison is not None
+    davies = content.comparison.models["davies"].mesh
+    assert f"{davies / SOLUTION.pressure_drop - 1:+.1%}" in page.text
+    assert "solution" in page.values("id")
+
+
+def test_a_page_without_pictures_says_why(content: ReportContent) -> None:
+    page = read(html_of(ReportContent(content.folder, CASE), "no OpenGL, said a test"))
+    assert "no-pictures" in page.values("id")
+    assert any("no OpenGL, said a test" in text for text in page.text)
+    assert "img" not in page.tags
+
+
+def test_equal_runs_make_equal_pages(content: ReportContent, html: str) -> None:
+    assert html_of(content) == html
+
+
+def test_charts_take_the_ink_of_the_page(html: str) -> None:
+    # black would vanish in the dark
+    assert "currentColor" in html
+    assert "#000000" not in html.split("</style>", 1)[1]
+
+
+def test_fibers_of_many_diameters_are_told_with_their_spread(content: ReportContent) -> None:
+    assert content.mat is not None
+    m = content.mat
+    radius = np.linspace(0.5e-6, 0.7e-6, m.fibers)
+    mixed = Mat(m.nodes, m.first, radius, m.slab, -1, "by hand", m.periodic)
+    html = html_of(ReportContent(content.folder, CASE, mat=mixed))
+    assert "nobody drew these fibers" in html

@@ -1,0 +1,91 @@
+"""Pictures: drawn by a child process, which may find no OpenGL."""
+
+import base64
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from pipeline.data import FIBERS, Floats
+from pipeline.report import subject_of, write_report
+from pipeline.report.painter import trimmed
+from pipeline.report.render import Painting, rendering_environment
+from pipeline.report.scenes import BACKGROUND, SCENES, Subject, fibers_of_faces, possible
+from tests.report.contents import whole
+from tests.report.pages import read
+
+
+def test_a_mat_alone_can_be_seen_from_above_and_from_the_side() -> None:
+    mat = whole().mat
+    assert mat is not None
+    assert possible(Subject(mat)) == ("mat-top", "mat-side")
+
+
+def test_everything_can_be_seen_of_a_whole_run() -> None:
+    subject = subject_of(whole())
+    assert subject is not None
+    assert possible(subject) == tuple(SCENES)
+
+
+def test_every_wall_of_the_mesh_gets_the_fiber_it_lies_on() -> None:
+    content = whole()
+    mesh, domain = content.mesh, content.domain
+    assert mesh is not None
+    assert domain is not None
+    faces = mesh.faces[mesh.patch == mesh.patches.index(FIBERS)]
+    found = fibers_of_faces(mesh, domain)
+    wall = domain.patch == domain.patches.index(FIBERS)
+    centers: Floats = domain.points[domain.triangles[wall]].mean(axis=1)
+    # by brute force over all pairs
+    distance = np.linalg.norm(mesh.points[faces].mean(axis=1)[:, None] - centers[None], axis=2)
+    np.testing.assert_array_equal(found, domain.fiber[wall][distance.argmin(axis=1)])
+
+
+def test_pictures_lose_their_empty_margin() -> None:
+    picture = Image.new("RGB", (300, 200), BACKGROUND)
+    picture.paste("black", (100, 50, 200, 150))
+    # 16 pixels are kept on each side
+    assert trimmed(picture).size == (132, 132)
+
+
+@pytest.mark.usefixtures("rendering")
+def test_a_page_holds_a_picture_of_every_scene(tmp_path: Path) -> None:
+    path = write_report(whole(), tmp_path)
+    page = read(path.read_text(encoding="utf-8"))
+    drawn = {value.removeprefix("picture-") for value in page.values("id") if value.startswith("picture-")}
+    assert drawn == set(SCENES)
+    for source in page.values("src"):
+        data = base64.b64decode(source.removeprefix("data:image/jpeg;base64,"), validate=True)
+        pixels = np.asarray(Image.open(io.BytesIO(data)).convert("RGB"))
+        # something other than background, and it has colors
+        assert pixels.std() > 5
+    assert path.stat().st_size < 5e6
+
+
+def test_where_nothing_can_be_rendered_the_page_is_made_without_pictures(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # VTK ends the process that asks a missing X server for a window
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "vtkXOpenGLRenderWindow")
+    page = read(write_report(whole(), tmp_path).read_text(encoding="utf-8"))
+    assert "no-pictures" in page.values("id")
+    assert "quality" in page.values("id")
+
+
+def test_a_mistake_in_a_scene_is_told_and_not_hidden(tmp_path: Path) -> None:
+    mat = whole().mat
+    assert mat is not None
+    with Painting(Subject(mat), ("no-such-scene",)) as painting:
+        assert "KeyError: 'no-such-scene'" in painting.finished().trouble
+
+
+def test_without_a_screen_vtk_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.platform", "linux")
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "VTK_DEFAULT_OPENGL_WINDOW"):
+        monkeypatch.delenv(name, raising=False)
+    assert rendering_environment()["VTK_DEFAULT_OPENGL_WINDOW"] == "vtkEGLRenderWindow"
+    monkeypatch.setenv("DISPLAY", ":0")
+    assert "VTK_DEFAULT_OPENGL_WINDOW" not in rendering_environment()
