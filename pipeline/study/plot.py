@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pipeline.study.quantity import read_quantity
 from pipeline.study.study import PointRow, StudyResult
 from pipeline.study.tables import shown
 from pipeline.units import parse
@@ -63,7 +64,15 @@ def plot_study(result: StudyResult) -> "Figure":
 
 def _draw(axes: "Axes", result: StudyResult, number: int) -> None:
     first, *others = result.keys
-    swept = list({shown(point.settings[first]): point.settings[first] for point in result.points}.values())
+    quantity = result.quantities[number]
+    found = [
+        (one.label, one.at, value)
+        for one in result.references
+        for text, value in one.values.items()
+        if read_quantity(text) == quantity
+    ]
+    values = [*(point.settings[first] for point in result.points), *(at for _, at, _ in found)]
+    swept = list({shown(value): value for value in values}.values())
     numbers = axis_of(swept)
     place = dict(zip(map(shown, swept), numbers[0] if numbers else range(len(swept)), strict=True))
     lines: dict[str, list[PointRow]] = {}
@@ -82,12 +91,17 @@ def _draw(axes: "Axes", result: StudyResult, number: int) -> None:
             capsize=2.5,
             label=label,
         )
+    crosses: dict[str, list[tuple[float, float]]] = {}
+    for label, at, value in found:
+        crosses.setdefault(label, []).append((place[shown(at)], value))
+    for index, (label, pairs) in enumerate(crosses.items()):
+        axes.plot(*zip(*pairs, strict=True), "x+*"[index % 3], color="#1a1a1a", markersize=8, label=label)
     if numbers is None:
         axes.set_xticks(range(len(swept)), list(map(shown, swept)))
     axes.set_xlabel(f"{first} [{numbers[1]}]" if numbers and numbers[1] else first)
-    axes.set_ylabel(result.quantities[number].label)
+    axes.set_ylabel(quantity.label)
     axes.grid(alpha=0.3)
-    if others:
+    if others or crosses:
         axes.legend(fontsize="small")
     most = max(len(point.runs) for point in result.points)
     axes.set_title(f"mean of {most} mats, 95 % confidence" if most > 1 else "one mat", fontsize="small", loc="left")

@@ -56,6 +56,16 @@ def _flattened(value: Any) -> Any:
     return flat(value) if isinstance(value, dict) else value
 
 
+class Reference(BaseModel):
+    """What somebody else found, for the plot."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    label: str = Field(description="Who found it, for the legend.")
+    at: Any = Field(description="Value of the first swept key.")
+    values: dict[str, float] = Field(description='What was found: "mat.solidity in %" = 9.5, as `measure` has it.')
+
+
 class Study(BaseModel):
     """One case run many times, and what is told of it."""
 
@@ -87,6 +97,10 @@ class Study(BaseModel):
     )
     picture: Literal["side", "top"] | None = Field(
         default=None, description="Draw the mat of each combination, with the first seed, from this side."
+    )
+
+    reference: tuple[Reference, ...] = Field(
+        default=(), description="What somebody else found, drawn into the plot as crosses."
     )
 
     @property
@@ -134,6 +148,10 @@ class Study(BaseModel):
                 near = difflib.get_close_matches(first, there, n=1)
                 advice = f"did you mean {near[0]}?" if near else f"it starts with one of {', '.join(there)}"
                 yield f"measure {text!r}: {advice}"
+
+        for reference in self.reference:
+            for text in sorted(set(reference.values) - set(self.measure)):
+                yield f"reference {reference.label!r}: {text!r} is not in measure"
 
     def points(self) -> list[dict[str, Any]]:
         """Give each combination of the swept keys' values."""

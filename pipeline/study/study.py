@@ -13,7 +13,7 @@ from pipeline.progress import Progress, silent
 from pipeline.study.one import read_result
 from pipeline.study.plan import Task, plan
 from pipeline.study.quantity import Quantity, Results, value_of
-from pipeline.study.settings import Study
+from pipeline.study.settings import Reference, Study
 from pipeline.study.summary import Estimate, estimate
 from pipeline.study.workers import carried_out
 
@@ -54,6 +54,8 @@ class StudyResult:
     points : tuple of PointRow
     made, reused : int
         Runs of this time, and of earlier times.
+    references : tuple of Reference
+        What somebody else found, for the plot.
     """
 
     keys: tuple[str, ...]
@@ -61,6 +63,7 @@ class StudyResult:
     points: tuple[PointRow, ...]
     made: int
     reused: int
+    references: tuple[Reference, ...] = ()
 
     @property
     def failed(self) -> int:
@@ -120,7 +123,7 @@ def carry_out_study(
                 failed = f", {len(errors)} failed" if errors else ""
                 tell(f"runs, {kept + done} of {len(tasks)} done{failed}", (kept + done) / len(tasks))
         points = tuple(_point(study, number, settings, tasks, errors) for number, settings in enumerate(study.points()))
-    return StudyResult(tuple(study.sweep), study.quantities, points, len(todo) - len(errors), kept)
+    return StudyResult(tuple(study.sweep), study.quantities, points, len(todo) - len(errors), kept, study.reference)
 
 
 class _Asked:

@@ -94,6 +94,10 @@ def test_every_mistake_of_a_study_is_told_at_once(tmp_path: Path) -> None:
         ({"measure": ["mat.solidity in furlongz"]}, "is no unit"),
         ({"measure": ["mst.solidity"]}, "did you mean mat?"),
         ({"measure": ["quality.cells"]}, "ends before the stage quality"),
+        (
+            {"reference": [{"label": "paper", "at": 0.1, "values": {"mat.solidity in %": 8.9}}]},
+            "'mat.solidity in %' is not in measure",
+        ),
         ({"until": "mats"}, "the stages are mat, "),
     ],
 )

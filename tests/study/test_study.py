@@ -8,6 +8,7 @@ import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import pipeline.study.study as study_module
@@ -20,6 +21,7 @@ from pipeline.study import Study, StudyResult, carry_out_study
 from pipeline.study.one import carry_out
 from pipeline.study.plan import Task, plan
 from pipeline.study.quantity import Results
+from pipeline.study.settings import Reference
 from pipeline.study.tables import write_tables
 from pipeline.study.workers import SLURM, carried_out
 
@@ -214,6 +216,17 @@ def test_the_plot_has_a_panel_per_quantity(study: Study, here: list[Task], tmp_p
     assert len(handles) == 2
     # both diameters stand at their place in the unit of the first
     assert panels[0].dataLim.intervalx == pytest.approx([0.8, 1.0])
+
+
+def test_what_others_found_is_in_the_plot(study: Study, here: list[Task], tmp_path: Path) -> None:
+    from pipeline.study.plot import plot_study
+
+    paper = Reference(label="paper", at=0.15, values={"mat.solidity in %": 9.48})
+    result = carry_out_study(study.model_copy(update={"reference": (paper,)}), tmp_path / "out")
+    solidity, thickness, *_ = plot_study(result).axes
+    [cross] = [line for line in solidity.lines if line.get_label() == "paper"]
+    assert np.asarray(cross.get_xydata()).tolist() == [[0.15, 9.48]]
+    assert thickness.get_legend() is None
 
 
 @pytest.mark.slow
