@@ -8,6 +8,7 @@ from pipeline.case import read_case
 from pipeline.cli.listen import listening
 from pipeline.cli.tables import outcome_table, result_tables
 from pipeline.errors import CaseError
+from pipeline.report import PAGE
 from pipeline.run import STAGES, Run, run
 
 
@@ -32,6 +33,9 @@ def run_case(
 
 def _next_steps(folder: Path) -> list[str]:
     steps = [f"Everything is in {folder}"]
+    page = folder / "report" / PAGE
+    if page.is_file():
+        steps.append(f"  read it:    {page}")
     openfoam, vtk = folder / "export" / "openfoam", folder / "export" / "vtk"
     if openfoam.is_dir():
         steps.append(f"  solve it:   cd {openfoam} && ./Allrun")

@@ -5,6 +5,7 @@ A machine without a screen is told to VTK before it looks for one, or it would c
 
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -91,7 +92,8 @@ class Painting:
             code = self._child.wait(_TIME_LIMIT)
         except subprocess.TimeoutExpired:
             return Pictures(trouble=f"they were not drawn within {_TIME_LIMIT:.0f} s")
-        log = (folder / "log").read_text(errors="replace").strip()
+        # VTK colors what it says
+        log = re.sub(r"\x1b\[[0-9;]*m", "", (folder / "log").read_text(errors="replace")).strip()
         if code:
             how = f"was ended by signal {-code}" if code < 0 else f"ended with exit code {code}"
             last = log.splitlines()[-1] if log else "it said nothing"

@@ -166,13 +166,13 @@ def steps(content: ReportContent) -> list[Step]:
     folder = shlex.quote(str(content.folder))
     found = []
     if content.comparison is None or content.mesh is None:
-        found.append(Step("This run is not complete; the same command goes on where it stopped.", "fibertwin run CASE"))
+        found.append(Step("This run is not complete; the same command goes on.", f"fibertwin run CASE --out {folder}"))
     if content.quality is not None and content.quality.verdict == "fail":
         found.append(
             Step(
                 "Mend the mesh before solving: more passes, finer cells or another seed; "
                 "clearance between fibers spares the sharp crevices that make most bad cells.",
-                "fibertwin run CASE --set tetmesh.passes=12",
+                f"fibertwin run CASE --out {folder} --set tetmesh.passes={2 * content.case.tetmesh.passes}",
             )
         )
     exported = content.manifests.get("export", {}).get("counts", {}).get("formats", ())
