@@ -1,29 +1,39 @@
 """The line: one noun in, one noun out per stage, each result kept on disk and reused while it holds."""
 
+import math
 import resource
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from pipeline import store
 from pipeline.analytics import compare, predictor
 from pipeline.analytics.growth import Predictor
+from pipeline.analytics.pressure_models import pressure_model
+from pipeline.analytics.slip import SLIP_COEFFICIENT, knudsen, slip_length
 from pipeline.case import Case
 from pipeline.data import Comparison, FluidDomain, Mat, QualityReport, Solution, Surface, TetMesh
 from pipeline.enclosure.duct import enclose
 from pipeline.errors import StageError
-from pipeline.export import export
+from pipeline.export import FiberSlip, export, fiber_radius
 from pipeline.geometry.tets import volume_between
-from pipeline.mat import BoxSettings, FileSettings, LayeredSettings, MatMeasures, generate, measure
+from pipeline.mat import ArraySettings, BoxSettings, FileSettings, LayeredSettings, MatMeasures, generate, measure
+from pipeline.mat.exchange import write_fibers
+from pipeline.mat.tally import report_stop
 from pipeline.progress import Progress, silent
 from pipeline.quality import cell_fields, judge
 from pipeline.report import PAGE, ReportContent, write_report
+from pipeline.solve import Bed, openfoam_missing, solve
 from pipeline.surface.files import write_surface
+from pipeline.surface.measures import measure_surface
 from pipeline.surface.union import unite
 from pipeline.tetmesh import TetmeshMeasures, tetrahedralize
+
+SOLVING = ".solving"
+"""Folder of a run that holds a solver's run until it has settled."""
 
 CASE = "case.json"
 """File of a run's folder that holds its case, every setting in SI."""
@@ -36,7 +46,8 @@ class Stage:
     """One step of the line: what it needs, what else its result depends on, and how it is made.
 
     A stage that is needed but not there, as the report of a partial run may find, takes no part in the result.
-    `make` writes into a folder of its own and gives the counts for the manifest.
+    `make` writes into a folder of its own and gives the counts for the manifest. `obstacle` names what keeps the
+    stage from running on this machine; a stage that is `asked` for runs only then.
     """
 
     name: str
@@ -45,11 +56,13 @@ class Stage:
     rooms: tuple[str, ...]
     libraries: tuple[str, ...]
     make: Callable[["Run", Path, Progress], Counts]
+    obstacle: Callable[["Run"], str | None] = lambda run: None
+    asked: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What became of a stage: made, reused, or skipped for a reason."""
+    """What became of a stage: made, reused, or skipped; the counts then hold the reason."""
 
     stage: str
     folder: Path
@@ -130,12 +143,18 @@ class Run:
 
 
 def _make_mat(run: Run, into: Path, tell: Progress) -> Counts:
-    settings = run.case.mat
-    mat = generate(settings, mat_predictor(run.case), tell)
+    settings, predict = run.case.mat, mat_predictor(run.case)
+    mat = generate(settings, predict, tell)
     measures = measure(mat)
     store.save(mat, into / "mat.npz")
     store.write_json(into / "measures.json", measures)
-    return {"fibers": mat.fibers, "segments": mat.segments}
+    write_fibers(mat, into / "fibers.csv")
+    counts: Counts = {"fibers": mat.fibers, "segments": mat.segments}
+    if isinstance(settings, LayeredSettings | BoxSettings):
+        stop = report_stop(settings.stop, measures, predict)
+        store.write_json(into / "stop.json", stop)
+        counts[stop.quantity] = stop.reached
+    return counts
 
 
 def mat_predictor(case: Case) -> Predictor | None:
@@ -147,6 +166,7 @@ def mat_predictor(case: Case) -> Predictor | None:
 def _make_surface(run: Run, into: Path, tell: Progress) -> Counts:
     surface = unite(run.mat, run.case.surface, tell)
     store.save(surface, into / "surface.npz")
+    store.write_json(into / "measures.json", measure_surface(run.mat, surface, run.case.surface, tell))
     write_surface(surface, into)
     return {"triangles": len(surface.triangles), "solidity": surface.solidity}
 
@@ -173,7 +193,11 @@ def _make_quality(run: Run, into: Path, tell: Progress) -> Counts:
 def _make_export(run: Run, into: Path, tell: Progress) -> Counts:
     mesh, case = run.mesh.face_mesh(), run.case
     fields = cell_fields(mesh) if "vtk" in case.export.formats else {}
-    written = export(mesh, into, case.export, case.flow.flow(), case.enclosure.sides, tell, fields)
+    flow = case.flow.flow()
+    slip = None
+    if case.export.fiber_wall == "slip":
+        slip = FiberSlip(SLIP_COEFFICIENT * flow.mean_free_path, fiber_radius(mesh, run.domain))
+    written = export(mesh, into, case.export, flow, case.enclosure.sides, tell, fields, slip)
     return {"formats": list(written)}
 
 
@@ -183,6 +207,44 @@ def _make_compare(run: Run, into: Path, tell: Progress) -> Counts:
     comparison = compare(run.mat, run.surface.solidity, 1.0 - air / mesh.slab.volume, run.case.flow.flow())
     store.write_json(into / "comparison.json", comparison)
     return {"mesh_solidity": comparison.solidity["mesh"]}
+
+
+def _make_solve(run: Run, into: Path, tell: Progress) -> Counts:
+    mat, flow, comparison = run.mat, run.case.flow.flow(), run.comparison
+    model = pressure_model(run.case.flow.pressure_model)
+    kn = knudsen(flow.mean_free_path, comparison.fiber_diameter)
+    # beside the stage and not in it: a killed run continues from there
+    work = run.folder / SOLVING
+    bed = Bed(
+        face_area=mat.slab.face_area,
+        thickness=mat.thickness,
+        pressure_factor=float(model.coefficient(comparison.solidity["mesh"], slip_length(kn))),
+        fiber_length=_parallel_length(run, comparison),
+    )
+    solution = solve(run.folder / "export" / "openfoam", work, flow, bed, run.case.solve, tell)
+    store.write_json(into / "solution.json", solution)
+    store.write_json(into / "comparison.json", {**asdict(comparison), "cfd": solution.pressure_drop})
+    work.rename(into / "openfoam")
+    return {
+        "pressure_drop": solution.pressure_drop,
+        "iterations": solution.iterations,
+        "converged": solution.converged,
+        "force_balance_error": solution.force_balance_error,
+    }
+
+
+def _parallel_length(run: Run, comparison: Comparison) -> float | None:
+    # fibers on a symmetry plane count by half, as they do in the solidity
+    mat = run.mat
+    if not isinstance(run.case.mat, ArraySettings):
+        return None
+    return comparison.solidity["nominal"] * mat.slab.volume / (math.pi * float(mat.radius[0]) ** 2)
+
+
+def _no_solver(run: Run) -> str | None:
+    if "openfoam" not in run.case.export.formats:
+        return "export.formats lacks openfoam, the solver's format"
+    return openfoam_missing(run.case.solve.cores)
 
 
 def _make_report(run: Run, into: Path, tell: Progress) -> Counts:
@@ -235,6 +297,16 @@ LINE = (
     ),
     Stage("compare", ("mat", "surface", "tetmesh"), ("flow",), ("analytics",), ("numpy", "scipy"), _make_compare),
     Stage(
+        "solve",
+        ("mat", "export", "compare"),
+        ("solve", "flow", "mat"),
+        ("solve", "analytics"),
+        ("foamlib",),
+        _make_solve,
+        _no_solver,
+        asked=True,
+    ),
+    Stage(
         "report",
         ("mat", "surface", "enclosure", "tetmesh", "quality", "export", "compare", "solve"),
         tuple(Case.model_fields),
@@ -244,10 +316,12 @@ LINE = (
     ),
 )
 STAGES = tuple(stage.name for stage in LINE)
+LAST = [stage.name for stage in LINE if not stage.asked][-1]
+"""Where a run ends that nobody asked more of."""
 
 
 def run(
-    case: Case, folder: Path, until: str = STAGES[-1], force: frozenset[str] = frozenset(), tell: Progress = silent
+    case: Case, folder: Path, until: str = LAST, force: frozenset[str] = frozenset(), tell: Progress = silent
 ) -> list[Outcome]:
     """Run the line for a case, stage by stage, and reuse what still holds.
 
@@ -276,7 +350,7 @@ def run(
     this = Run(case, folder)
     with store.locked(folder):
         store.write_json(folder / CASE, case.model_dump(mode="json"))
-        for stage in LINE[: STAGES.index(until) + 1]:
+        for stage in _wanted(until):
             outcomes.append(_step(stage, this, stage.name in force, tell))
     return outcomes
 
@@ -305,8 +379,16 @@ def report(folder: Path, tell: Progress = silent) -> Path:
         return _step(LINE[-1], this, True, tell).folder / PAGE
 
 
+def _wanted(until: str) -> list[Stage]:
+    last = max(STAGES.index(until), STAGES.index(LAST) if LINE[STAGES.index(until)].asked else 0)
+    return [stage for stage in LINE[: last + 1] if not stage.asked or stage.name == until]
+
+
 def _step(stage: Stage, run: Run, again: bool, tell: Progress) -> Outcome:
     folder = run.folder / stage.name
+    obstacle = stage.obstacle(run)
+    if obstacle is not None:
+        return Outcome(stage.name, folder, "skipped", 0.0, {"reason": obstacle})
     identity = _identity(stage, run)
     key = store.digest(identity)
     done = None if again else store.finished(folder, key)

@@ -1,9 +1,13 @@
 """What every test may use."""
 
 import shutil
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
+
+from pipeline.case import read_case
+from pipeline.run import Run, run
 
 # a busy machine is no fault of the code's
 settings.register_profile("fibertwin", deadline=None)
@@ -17,3 +21,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if "openfoam" in item.keywords:
             item.add_marker(skip)
+
+
+@pytest.fixture(scope="session")
+def smoke(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """Run the bundled smoke case once for every test that looks at a whole run."""
+    case = read_case(Path(__file__).parent.parent / "cases" / "smoke.toml")
+    folder = tmp_path_factory.mktemp("smoke") / "run"
+    run(case, folder, until="compare")
+    return Run(case, folder)

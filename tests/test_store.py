@@ -39,21 +39,25 @@ def test_pickles_are_not_opened(tmp_path: Path) -> None:
         store.load(Mat, hostile)
 
 
+def write_and_fail(stage: Path, problem: BaseException) -> None:
+    with store.side_folder(stage) as side:
+        (side / "a").write_text("cut short")
+        raise problem
+
+
 def test_a_stage_takes_its_place_only_when_it_is_whole(tmp_path: Path) -> None:
     stage = tmp_path / "mat"
     with store.side_folder(stage) as side:
         (side / "a").write_text("first")
-    with pytest.raises(KeyboardInterrupt), store.side_folder(stage) as side:
-        (side / "a").write_text("second, cut short")
-        raise KeyboardInterrupt
+    with pytest.raises(KeyboardInterrupt):
+        write_and_fail(stage, KeyboardInterrupt())
     assert (stage / "a").read_text() == "first"
     assert [path.name for path in tmp_path.iterdir()] == ["mat"]
 
 
 def test_a_full_disk_is_a_clear_error_and_leaves_nothing(tmp_path: Path) -> None:
-    with pytest.raises(StageError, match="no space left on device"), store.side_folder(tmp_path / "mat") as side:
-        (side / "half").write_text("x")
-        raise OSError(errno.ENOSPC, "No space left on device", str(side / "half"))
+    with pytest.raises(StageError, match="no space left on device"):
+        write_and_fail(tmp_path / "mat", OSError(errno.ENOSPC, "No space left on device"))
     assert list(tmp_path.iterdir()) == []
 
 

@@ -9,7 +9,7 @@ from pipeline.cli.listen import listening
 from pipeline.cli.tables import outcome_table, result_tables
 from pipeline.errors import CaseError
 from pipeline.report import PAGE
-from pipeline.run import STAGES, Run, run
+from pipeline.run import LAST, STAGES, Run, run
 
 
 def run_case(
@@ -22,7 +22,7 @@ def run_case(
     case = read_case(path, overrides)
     out = Console()
     with listening(out, quiet) as tell:
-        outcomes = run(case, folder, until or STAGES[-1], frozenset(force), tell)
+        outcomes = run(case, folder, until or LAST, frozenset(force), tell)
     if quiet:
         return
     out.print(outcome_table(outcomes))

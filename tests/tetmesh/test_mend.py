@@ -19,8 +19,7 @@ def shaken(points: Floats, free: npt.NDArray[np.bool_], by: float, seed: int) ->
 
 
 def inside(points: Floats) -> npt.NDArray[np.bool_]:
-    result: npt.NDArray[np.bool_] = ((points > 0) & (points < 1)).all(axis=1)
-    return result
+    return np.asarray(((points > 0) & (points < 1)).all(axis=1))
 
 
 def free_to_move(points: Floats) -> tuple[Floats, Floats]:
