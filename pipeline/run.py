@@ -30,7 +30,7 @@ from pipeline.solve import Bed, openfoam_missing, solve
 from pipeline.surface.files import write_surface
 from pipeline.surface.measures import measure_surface
 from pipeline.surface.union import unite
-from pipeline.tetmesh import TetmeshMeasures, tetrahedralize
+from pipeline.tetmesh.mesh import TetmeshMeasures, tetrahedralize
 
 SOLVING = ".solving"
 """Folder of a run that holds a solver's run until it has settled."""

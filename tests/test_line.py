@@ -41,6 +41,7 @@ def test_the_fixed_keys_of_the_results_are_there(smoke: Run) -> None:
     assert {"cells", "points", "faces", "metrics", "verdict"} <= quality.keys()
     metrics = quality["metrics"]
     assert isinstance(metrics, dict)
+    figures_of = {"min", "mean", "p99", "max", "limit", "over_limit"}
     for name in [
         "non_orthogonality",
         "skewness",

@@ -7,7 +7,7 @@ from typing import Any
 from pipeline.case import Case
 from pipeline.data import Comparison, FluidDomain, Mat, QualityReport, Solution, Surface, TetMesh
 from pipeline.mat import MatMeasures
-from pipeline.tetmesh import TetmeshMeasures
+from pipeline.tetmesh.mesh import TetmeshMeasures
 
 
 @dataclass(frozen=True, eq=False, slots=True)

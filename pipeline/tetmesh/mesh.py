@@ -15,7 +15,6 @@ from pipeline.tetmesh.child import Limits, Meshed, run_child
 from pipeline.tetmesh.corners import split_corners
 from pipeline.tetmesh.crevices import in_crevice, largest_part
 from pipeline.tetmesh.fit import fitted
-from pipeline.tetmesh.mend import mended
 from pipeline.tetmesh.patches import assign, flattened, planes
 from pipeline.tetmesh.settings import TetmeshSettings
 from pipeline.tetmesh.size_field import size_field
@@ -167,6 +166,9 @@ def _walls(points: Floats, tets: Ints, domain: FluidDomain) -> Ints:
 
 
 def _mended(points: Floats, tets: Ints, domain: FluidDomain, wall_leash: float) -> tuple[Floats, npt.NDArray[np.bool_]]:
+    # numba takes half a second to load, which no refused case file should cost
+    from pipeline.tetmesh.mend import mended
+
     leash = np.full(len(points), np.inf)
     leash[_walls(points, tets, domain)] = wall_leash
     return mended(points, tets, _free_axes(points, domain.box), leash, _SWEEPS)
