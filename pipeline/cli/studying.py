@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 
 from rich.console import Console
+from rich.markup import escape
 
 from pipeline.cli.listen import listening
 from pipeline.cli.tables import plain_table
@@ -30,7 +31,9 @@ def run_study(
             written = write_tables(result, folder)
             written += _drawn(study, result, folder, plot)
     if not quiet:
-        out.print(plain_table("mean +- half width of its 95 % confidence interval", *_table(result)))
+        for number, quantity in enumerate(result.quantities):
+            out.print(plain_table(escape(quantity.label), *_table(result, number)))
+        out.print()
         out.print(
             f"{result.runs} runs: {result.made} made, {result.reused} kept from before, {result.failed} failed",
             *(f"  {name}" for name in written),
@@ -59,17 +62,23 @@ def _drawn(study: Study, result: StudyResult, folder: Path, plot: Path | None) -
     return written
 
 
-def _table(result: StudyResult) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    columns = (*result.keys, "failed", *(quantity.label for quantity in result.quantities))
+def _table(result: StudyResult, number: int) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    columns = (*result.keys, "mean", "95 % interval", "std of one run", "runs", "failed")
     rows = []
     for point in result.points:
-        numbers = [
-            "-"
-            if math.isnan(each.mean)
-            else f"{each.mean:.4g}"
-            if math.isnan(each.half_width)
-            else f"{each.mean:.4g} +- {each.half_width:.2g}"
-            for each in point.estimates
-        ]
-        rows.append((*(shown(point.settings[key]) for key in result.keys), str(point.failed), *numbers))
+        each = point.estimates[number]
+        rows.append(
+            (
+                *(shown(point.settings[key]) for key in result.keys),
+                _number(each.mean),
+                "+- " + _number(each.half_width, digits=2),
+                _number(each.std, digits=2),
+                str(each.n),
+                str(point.failed),
+            )
+        )
     return columns, rows
+
+
+def _number(value: float, digits: int = 5) -> str:
+    return "-" if math.isnan(value) else f"{value:.{digits}g}"
