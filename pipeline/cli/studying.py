@@ -54,10 +54,11 @@ def _drawn(study: Study, result: StudyResult, folder: Path, plot: Path | None) -
 
         save_figure(plot_study(result), plot or folder / PLOT)
         written.append(plot or folder / PLOT)
-    if study.picture:
+    left_out = frozenset(number for number, point in enumerate(result.points) if point.runs[0].error)
+    if study.picture and len(left_out) < len(result.points):
         from pipeline.study.pictures import draw_points
 
-        draw_points(study, folder / PICTURES)
+        draw_points(study, folder / PICTURES, left_out)
         written.append(folder / PICTURES)
     return written
 

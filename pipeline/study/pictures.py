@@ -10,7 +10,7 @@ from pipeline.study.settings import Study
 from pipeline.study.tables import shown
 
 
-def draw_points(study: Study, path: Path) -> None:
+def draw_points(study: Study, path: Path, left_out: frozenset[int] = frozenset()) -> None:
     """Draw the mat of each combination, with the first seed, into one PNG.
 
     Parameters
@@ -18,10 +18,14 @@ def draw_points(study: Study, path: Path) -> None:
     study : Study
         With a ``picture``.
     path : Path
+    left_out : frozenset of int
+        Combinations whose mat cannot be made; one at least must be left.
     """
     assert study.picture is not None
     mats, labels = [], []
-    for point in study.points():
+    for number, point in enumerate(study.points()):
+        if number in left_out:
+            continue
         settings = study.settings(point)
         case = read_case(study.case, settings)
         if hasattr(case.mat, "seed"):
