@@ -4,7 +4,7 @@ import difflib
 import tomllib
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -21,6 +21,8 @@ from pipeline.units import FROM_FILE
 
 LARGEST_FILE = 1_000_000
 """No case file is larger than this many bytes: a larger one is something else."""
+
+_Settings = TypeVar("_Settings", bound=BaseModel)
 
 
 class Case(BaseModel):
@@ -126,8 +128,19 @@ def validate(content: dict[str, Any], source: str) -> Case:
     CaseError
         With one line per mistake: its path, what is wrong, and what would do.
     """
+    return validate_as(Case, content, source)
+
+
+def validate_as(kind: type[_Settings], content: dict[str, Any], source: str) -> _Settings:
+    """Make settings with the tables of a case, or some of them, of what a person wrote.
+
+    Raises
+    ------
+    CaseError
+        As `validate`.
+    """
     try:
-        return Case.model_validate(content, context=FROM_FILE)
+        return kind.model_validate(content, context=FROM_FILE)
     except ValidationError as problem:
         lines = [_line(error, content) for error in problem.errors(include_url=False)]
         count = f"{len(lines)} mistakes" if len(lines) > 1 else "a mistake"

@@ -114,8 +114,47 @@ def quantity_reader(unit: str) -> BeforeValidator:
     return BeforeValidator(read)
 
 
+_SCALES: dict[str, tuple[tuple[str, float], ...]] = {
+    "m": (("m", 1.0), ("mm", 1e-3), ("um", 1e-6), ("nm", 1e-9)),
+    "m/s": (("m/s", 1.0), ("cm/s", 1e-2), ("mm/s", 1e-3)),
+    "kelvin": (("K", 1.0),),
+    "Pa": (("Pa", 1.0),),
+    "Pa*s": (("Pa*s", 1.0),),
+    "kg/m^3": (("kg/m^3", 1.0),),
+    "s": (("h", 3600.0), ("min", 60.0), ("s", 1.0), ("ms", 1e-3)),
+    "byte": (("GiB", 2.0**30), ("MiB", 2.0**20), ("byte", 1.0)),
+    "degree": (("deg", 1.0),),
+    "": (("", 1.0),),
+}
+
+
+def written(value: float, unit: str) -> str:
+    """Write an SI value as a person would in a case file: `parse` reads the same float from it.
+
+    Parameters
+    ----------
+    value : float [unit]
+    unit : str
+        The SI unit, as for `parse`.
+
+    Returns
+    -------
+    str
+        With the largest unit of which it is one or more.
+
+    Examples
+    --------
+    >>> written(1.4e-6, "m"), written(0.025, "m/s"), written(7200.0, "s"), written(0.04, "")
+    ('1.4 um', '2.5 cm/s', '2 h', '0.04')
+    """
+    scales = _SCALES[unit]
+    name, size = next((scale for scale in scales if abs(value) >= scale[1] * (1 - 1e-12)), scales[-1])
+    return f"{float(f'{value / size:.15g}'):.15g} {name}".strip()
+
+
 def _schema(unit: str, meaning: str) -> WithJsonSchema:
-    text = {"type": "string", "description": meaning, "examples": [_EXAMPLES[unit]]}
+    # x-unit: what the value is kept in; the case-file reference writes defaults with it
+    text = {"type": "string", "description": meaning, "examples": [_EXAMPLES[unit]], "x-unit": unit}
     return WithJsonSchema({"anyOf": [{"type": "number"}, text]} if unit == "" else text)
 
 
@@ -180,6 +219,14 @@ Angle = Annotated[
     _schema("degree", "an angle with its unit"),
 ]
 """An angle between 0 and 180, in degrees as mesh tools count them [degree]."""
+
+Direction = Annotated[
+    float,
+    quantity_reader("degree"),
+    Field(ge=-180, le=180, allow_inf_nan=False),
+    _schema("degree", "an angle from -180 to 180 with its unit"),
+]
+"""A direction in a plane [degree]."""
 
 Fraction = Annotated[
     float, quantity_reader(""), Field(gt=0, lt=1, allow_inf_nan=False), _schema("", "a fraction between 0 and 1")

@@ -8,6 +8,7 @@ from typing import Annotated
 from cyclopts import App, CycloptsError, Parameter
 from rich.console import Console
 
+from pipeline.cli.bundled import found
 from pipeline.errors import FibertwinError
 
 app = App(
@@ -15,6 +16,7 @@ app = App(
     help="From a fiber mat to a CFD case one can trust: one TOML file in, a checked OpenFOAM case out.",
     version_flags=["--version"],
 )
+app.register_install_completion_command()
 out = Console()
 err = Console(stderr=True)
 
@@ -32,30 +34,90 @@ def run(
     until: str | None = None,
     set_: Annotated[tuple[str, ...], Parameter(name=["--set", "-s"], negative="", consume_multiple=False)] = (),
     force: Annotated[tuple[str, ...], Parameter(negative="", consume_multiple=False)] = (),
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
     quiet: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
-    """Run a case through the line: mat, surface, enclosure, tetmesh, quality, export, compare.
+    """Run a case through the line: mat, surface, enclosure, tetmesh, quality, export, compare, report.
 
     Finished stages are reused while nothing they depend on has changed, so a run that was stopped continues.
 
     Parameters
     ----------
     case
-        The case file (TOML).
+        The case file (TOML), or the name of a bundled case: ``fibertwin cases`` lists them.
     out
         Folder of this run; ``runs/<name of the case file>`` if left out.
     until
-        Last stage to run.
+        Last stage to run: mat, surface, enclosure, tetmesh, quality, export, compare, solve (which needs OpenFOAM) or
+        report; report if left out, without solve.
     set_
         Override a key of the case file: ``--set mat.seed=7``. May be repeated.
     force
         Make this stage again even if its result still holds. May be repeated.
+    as_json
+        Print JSON instead of tables: of each stage its folder, what became of it, its seconds and its counts in SI.
     quiet
         Print nothing but errors.
     """
     from pipeline.cli.running import run_case
 
-    run_case(case, out or Path("runs") / case.stem, until, set_, force, quiet)
+    run_case(found(case), out or Path("runs") / case.stem, until, set_, force, as_json, quiet)
+
+
+@app.command
+def solve(
+    run: Path,
+    *,
+    set_: Annotated[tuple[str, ...], Parameter(name=["--set", "-s"], negative="", consume_multiple=False)] = (),
+    again: Annotated[bool, Parameter(negative="")] = False,
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    quiet: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Solve the flow of a run that is there, with OpenFOAM; a solution that was stopped continues.
+
+    Parameters
+    ----------
+    run
+        The folder of a run; stages that it lacks are made first.
+    set_
+        Override a key of solve: ``--set solve.cores=2`` or ``--set solve.max_iterations=5000``. May be repeated.
+    again
+        Solve again even if the solution still holds.
+    as_json
+        Print the solution as JSON with SI numbers.
+    quiet
+        Print nothing but errors.
+    """
+    from pipeline.cli.solving import solve_run
+
+    solve_run(run, set_, again, as_json, quiet)
+
+
+@app.command
+def quality(
+    mesh: Path,
+    *,
+    limits: Path | None = None,
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    quiet: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Judge any mesh by OpenFOAM's definitions, whoever made it; exit code 1 if a limit does not hold.
+
+    Parameters
+    ----------
+    mesh
+        An OpenFOAM case's folder, a mesh file (Fluent's .msh and .cas in text, .vtu, .vtk, gmsh's .msh, .inp, .bdf,
+        .su2, .mesh and what else meshio reads), or the folder of a run.
+    limits
+        A case file whose limits (``[quality]``) are held against the mesh, instead of those of checkMesh.
+    as_json
+        Print JSON with SI numbers, with the worst cells and where they are, instead of a table.
+    quiet
+        Print nothing but errors: the exit code tells.
+    """
+    from pipeline.cli.judging import judge_mesh
+
+    raise SystemExit(judge_mesh(mesh, found(limits) if limits else None, as_json, quiet))
 
 
 @app.command
@@ -116,7 +178,12 @@ def predict(
         "preset": preset,
         "pressure_model": pressure_model,
     }
-    predict_filter(source, {name: text for name, text in texts.items() if text is not None}, as_json, plot)
+    predict_filter(
+        found(source) if source else None,
+        {name: text for name, text in texts.items() if text is not None},
+        as_json,
+        plot,
+    )
 
 
 @app.command
@@ -153,7 +220,7 @@ def tune(
     """
     from pipeline.cli.tuning import tune_case
 
-    tune_case(case, target, set_, seeds, keep, as_json, quiet)
+    tune_case(found(case), target, set_, seeds, keep, as_json, quiet)
 
 
 @app.command
@@ -187,7 +254,7 @@ def study(
     """
     from pipeline.cli.studying import run_study
 
-    run_study(study, out or Path("runs/studies") / study.stem, workers, scheduler, plot, quiet)
+    run_study(found(study), out or Path("runs/studies") / study.stem, workers, scheduler, plot, quiet)
 
 
 @app.command
@@ -228,8 +295,46 @@ def view(run: Path, *, scene: str | None = None, screenshot: Path | None = None)
 
 
 @app.command
-def schema() -> None:
-    """Print the JSON Schema of the case file."""
+def init(file: Path = Path("case.toml"), *, generator: str = "layered") -> None:
+    """Write a case file with every key, its meaning and its default, to fill in; never over a file that is there.
+
+    Parameters
+    ----------
+    file
+        The case file to write.
+    generator
+        Where the fibers come from: layered (dropped one after the other), box (straight, anywhere in a slab), array
+        (parallel) or file (your own, from CSV).
+    """
+    from pipeline.cli.starting import write_first_case
+
+    write_first_case(file, generator)
+    out.print(f"{file} is written; next: fibertwin run {file}", markup=False, highlight=False, soft_wrap=True)
+
+
+@app.command
+def cases() -> None:
+    """List the bundled cases: each runs by its name alone, as in ``fibertwin run smoke``."""
+    from pipeline.cli.bundled import bundled, story
+    from pipeline.cli.tables import story_table
+
+    out.print(story_table((name, story(path)) for name, path in bundled().items()))
+
+
+@app.command
+def schema(*, markdown: Annotated[bool, Parameter(negative="")] = False) -> None:
+    """Print the JSON Schema of the case file, for editors and other programs.
+
+    Parameters
+    ----------
+    markdown
+        Print the reference of every key as a page instead.
+    """
+    if markdown:
+        from pipeline.cli.reference import case_file_reference
+
+        sys.stdout.write(case_file_reference())
+        return
     from pipeline.case import Case
 
     sys.stdout.write(json.dumps(Case.model_json_schema(), indent=2) + "\n")

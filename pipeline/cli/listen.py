@@ -12,6 +12,8 @@ from pipeline.progress import silent
 
 _QUIET_GAP = 10.0  # seconds between two plain lines about the same thing, so that a log stays readable
 
+_SHORT_GAP = 0.3  # seconds in which one line about a stage is enough
+
 
 @contextmanager
 def listening(console: Console, quiet: bool) -> Iterator[Tell]:
@@ -38,8 +40,9 @@ def _plain(console: Console) -> Tell:
 
     def tell(what: str, done: float | None = None) -> None:
         now = time.monotonic()
-        topic = what.split(",")[0]
-        if topic != last[0] or now - float(str(last[1])) > _QUIET_GAP:
+        topic, gap = what.split(",")[0], now - float(str(last[1]))
+        same_stage = topic.split(":")[0] == str(last[0]).split(":")[0]
+        if (topic != last[0] and not (same_stage and gap < _SHORT_GAP)) or gap > _QUIET_GAP:
             last[:] = [topic, now]
             share = f" {done:.0%}" if done is not None else ""
             console.print(f"  {what}{share}", markup=False, highlight=False, soft_wrap=True)

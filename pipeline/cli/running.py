@@ -1,5 +1,8 @@
 """`fibertwin run`: the line with its progress, and a summary that says where everything is."""
 
+import json
+import sys
+from dataclasses import asdict
 from pathlib import Path
 
 from rich.console import Console
@@ -13,7 +16,13 @@ from pipeline.run import LAST, STAGES, Run, run
 
 
 def run_case(
-    path: Path, folder: Path, until: str | None, overrides: tuple[str, ...], force: tuple[str, ...], quiet: bool
+    path: Path,
+    folder: Path,
+    until: str | None,
+    overrides: tuple[str, ...],
+    force: tuple[str, ...],
+    as_json: bool,
+    quiet: bool,
 ) -> None:
     """Run a case file and print what came of it."""
     for name in (*force, *([until] if until else [])):
@@ -21,12 +30,16 @@ def run_case(
             raise CaseError(f"there is no stage {name!r}; the stages are {', '.join(STAGES)}")
     case = read_case(path, overrides)
     out = Console()
-    with listening(out, quiet) as tell:
+    with listening(Console(stderr=True) if as_json else out, quiet) as tell:
         outcomes = run(case, folder, until or LAST, frozenset(force), tell)
+    if as_json:
+        stages = [{**asdict(outcome), "folder": str(outcome.folder)} for outcome in outcomes]
+        sys.stdout.write(json.dumps({"folder": str(folder), "stages": stages}, indent=2, allow_nan=False) + "\n")
+        return
     if quiet:
         return
     out.print(outcome_table(outcomes))
-    for table in result_tables(Run(case, folder), {outcome.stage for outcome in outcomes}):
+    for table in result_tables(Run(case, folder), {each.stage for each in outcomes if each.how != "skipped"}):
         out.print(table)
     out.print(*_next_steps(folder), sep="\n", markup=False, highlight=False, soft_wrap=True)
 

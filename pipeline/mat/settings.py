@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from pipeline.mat.tagged import OrText, by_key, key_for_text, refusal
-from pipeline.units import Distance, Fraction, Length, PositiveRatio, Pressure, Ratio, quantity_reader
+from pipeline.units import Direction, Distance, Fraction, Length, PositiveRatio, Pressure, Ratio
 
 LONGEST_MAT = 20_000
 """Default of `max_fibers`."""
@@ -26,9 +26,6 @@ Share = Annotated[Ratio, Field(le=1)]
 
 Count = Annotated[int, Field(ge=1)]
 """A whole number above 0."""
-
-Direction = Annotated[float, quantity_reader("degree"), Field(ge=-180, le=180, allow_inf_nan=False)]
-"""An angle in the plan, from x toward y [degree]."""
 
 
 class _Settings(BaseModel):

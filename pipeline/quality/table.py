@@ -18,11 +18,23 @@ def rows(report: QualityReport) -> list[tuple[str, ...]]:
 
 
 def _row(metric: Metric) -> tuple[str, ...]:
-    name = metric.name.replace("_", " ") + ("" if metric.unit == "1" else f" [{metric.unit}]")
+    unit, per_si = _shown_unit(metric)
+    name = metric.name.replace("_", " ") + ("" if unit == "1" else f" [{unit}]")
     sign = "<" if metric.worst_is == "largest" else ">"
     limit = "" if metric.limit is None else f"{sign} {metric.limit:g}"
-    numbers = (f"{value:.4g}" for value in (metric.min, metric.mean, metric.p99, metric.max))
-    return (name, metric.where, *numbers, limit, str(metric.over_limit) if metric.limit is not None else "")
+    numbers = (f"{value * per_si:.4g}" for value in (metric.min, metric.mean, metric.p99, metric.max))
+    return (name, metric.where, *numbers, limit, f"{metric.over_limit:,}" if metric.limit is not None else "")
+
+
+def _shown_unit(metric: Metric) -> tuple[str, float]:
+    """Give the unit that suits cells of this size, and how many of it make the metric's own."""
+    power = {"m3": 3, "m2": 2}.get(metric.unit)
+    if power is None:
+        return {"degree": "deg"}.get(metric.unit, metric.unit), 1.0
+    for name, size in (("m", 1.0), ("mm", 1e-3)):
+        if abs(metric.mean) >= size**power * 1e-6:
+            return f"{name}{power}", size**-power
+    return f"um{power}", 1e6**power
 
 
 def summary(report: QualityReport) -> str:

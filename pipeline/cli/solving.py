@@ -1,0 +1,50 @@
+"""`fibertwin solve`: the solver for a run that is there already."""
+
+import dataclasses
+import json
+import sys
+from pathlib import Path
+
+from pydantic import BaseModel
+from rich.console import Console
+
+from pipeline.case import Case, override, validate_as
+from pipeline.cli.listen import listening
+from pipeline.cli.tables import outcome_table, solution_table
+from pipeline.errors import CaseError, StageError
+from pipeline.run import Run, run
+from pipeline.solve.settings import SolveSettings
+
+SOLVE = "solve"
+
+
+class _Changes(BaseModel):
+    solve: SolveSettings
+
+
+def solve_run(folder: Path, overrides: tuple[str, ...], again: bool, as_json: bool, quiet: bool) -> None:
+    """Bring a run up to its solution and print it."""
+    case = _changed(Run.opened(folder).case, overrides)
+    with listening(Console(stderr=True), quiet or as_json) as tell:
+        outcomes = run(case, folder, SOLVE, frozenset({SOLVE} if again else ()), tell)
+    last = next(outcome for outcome in outcomes if outcome.stage == SOLVE)
+    if last.how == "skipped":
+        raise StageError(f"{folder} was not solved: {last.counts['reason']}")
+    solution = Run(case, folder).solution
+    if as_json:
+        sys.stdout.write(json.dumps(dataclasses.asdict(solution), indent=2, allow_nan=False) + "\n")
+    elif not quiet:
+        out = Console()
+        out.print(outcome_table(outcomes))
+        out.print(solution_table(solution))
+        out.print(f"Everything is in {last.folder}", markup=False, highlight=False, soft_wrap=True)
+
+
+def _changed(case: Case, overrides: tuple[str, ...]) -> Case:
+    for text in overrides:
+        if not text.startswith("solve."):
+            raise CaseError(
+                f"--set {text}: only keys of solve can be changed for a run that is there; fibertwin run makes another"
+            )
+    typed = validate_as(_Changes, override({"solve": {}}, overrides), "--set").solve.model_dump(exclude_unset=True)
+    return case.model_copy(update={"solve": case.solve.model_copy(update=typed)})

@@ -1,0 +1,107 @@
+"""`fibertwin init`: a case file that holds every key, each with its meaning."""
+
+import os
+import textwrap
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from pydantic import BaseModel
+
+from pipeline.case import Case
+from pipeline.cli.describe import Key, keys, summary
+from pipeline.errors import CaseError, StageError
+from pipeline.mat.settings import ArraySettings, BoxSettings, FileSettings, LayeredSettings, Stop
+from pipeline.store import disk_trouble_explained
+
+_WIDTH = 110
+_GENERATORS: dict[str, type[BaseModel]] = {
+    "layered": LayeredSettings,
+    "box": BoxSettings,
+    "array": ArraySettings,
+    "file": FileSettings,
+}
+# What a first case has where there is no default: the paper's fibers in a corner small enough to mesh in a minute.
+_FIRST_CASE: Mapping[str, str] = {
+    "side": '"20 um"',
+    "thickness": '"10 um"',
+    "fiber_diameter": '"1.4 um"',
+    "relaxation_slope": "0.15",
+    "arrangement": '"square"',
+    "solidity": '"10 %"',
+    "file": '"fibers.csv"',
+    "pressure_drop": '"320 Pa"',
+    "efficiency": '"99.97 %"',
+    "count": "100",
+    "particle_diameter": '"300 nm"',
+    "mean_free_path": '"65.3 nm"',
+}
+_FIRST_STOP = {"layered": ("coverage", "1"), "box": ("solidity", '"10 %"')}
+
+
+def write_first_case(path: Path, generator: str) -> None:
+    """Write a commented case file.
+
+    Raises
+    ------
+    CaseError
+        If there is no such generator.
+    StageError
+        If the file is there already, or cannot be written.
+    """
+    text = first_case(generator)
+    with disk_trouble_explained(path):
+        try:
+            # exclusive creation: no moment between looking and writing
+            with path.open("x", encoding="utf-8") as file:
+                file.write(text)
+        except FileExistsError:
+            raise StageError(f"{path} is there already and stays as it is; name another file") from None
+        except FileNotFoundError:
+            raise StageError(f"there is no folder {path.parent}{os.sep}; make it first") from None
+
+
+def first_case(generator: str) -> str:
+    """Give the text of a case file with every key, those with a default behind a ``#``."""
+    if generator not in _GENERATORS:
+        raise CaseError(f"there is no generator {generator!r}; the generators are {', '.join(_GENERATORS)}")
+    lines = [
+        f"# {summary(_GENERATORS[generator])[:-1]}: a first case, made by fibertwin init.",
+        "# Which pressure drop does it have? Keys behind a # show what holds when they are left out.",
+    ]
+    for key in keys(Case):
+        settings = _GENERATORS[generator] if key.name == "mat" else key.tables[0]
+        lines += ["", "", *_comment(key.meaning), f"[{key.name}]", *_table(settings, generator)]
+        if key.name == "mat" and generator in _FIRST_STOP:
+            lines += ["", *_comment("When the mat is complete: exactly one quantity."), "[mat.stop]"]
+            lines += _table(Stop, generator)
+    return "\n".join(lines) + "\n"
+
+
+def _table(settings: type[BaseModel], generator: str) -> Iterator[str]:
+    stop, target = _FIRST_STOP.get(generator, ("", ""))
+    # the key that says what kind of table this is comes first
+    for key in sorted(keys(settings), key=lambda key: key.name != "generator"):
+        if key.tables == (Stop,):
+            continue
+        yield ""
+        if key.name == "generator":
+            yield from _comment(f"{key.meaning} The generators are {', '.join(_GENERATORS)}.")
+            yield f'generator = "{generator}"'
+            continue
+        yield from _comment(f"{key.meaning} Takes: {key.takes}.")
+        if key.name == stop and settings is Stop:
+            yield f"{key.name} = {target}"
+        elif key.required:
+            yield f"{key.name} = {_FIRST_CASE[key.name]}"
+        elif key.default is not None:
+            yield f"#{key.name} = {key.default}"
+        else:
+            yield f"#{key.name} = {_shown(key)}  # not set; this is an example"
+
+
+def _shown(key: Key) -> str:
+    return _FIRST_CASE.get(key.name) or key.example or '""'
+
+
+def _comment(text: str) -> list[str]:
+    return textwrap.wrap(text.replace("`", ""), _WIDTH, initial_indent="# ", subsequent_indent="# ")
