@@ -13,7 +13,7 @@ from pipeline.errors import StageError
 from pipeline.geometry.cells import KINDS, cell_faces, polygons_of, rows_of
 
 UNNAMED = "boundary"
-_SURFACES = {"triangle", "quad"}
+_SURFACES = {"triangle": 3, "quad": 4}
 _TAGS = ("gmsh:physical", "su2:tag", "medit:ref", "nastran:ref")
 _READABLE = frozenset(
     {
@@ -131,9 +131,7 @@ def _volume(content: Any, points: Floats) -> tuple[Ints, Ints, int]:
             continue
         if block.type not in KINDS:
             raise ValueError(f"{len(block.data)} cells are of the kind {block.type}, which is not read")
-        corners = np.asarray(block.data, np.int64)
-        if len(corners) and not 0 <= corners.min() <= corners.max() < len(points):
-            raise ValueError(f"a {block.type} has a corner that is no point")
+        corners = _corners(block, len(points))
         if block.type == "wedge" and _mostly_inside_out(points, corners):
             # VTK and gmsh number a prism's two triangles the opposite way round
             corners = corners[:, [3, 4, 5, 0, 1, 2]]
@@ -150,6 +148,17 @@ def _widened(faces: Ints, width: int) -> Ints:
     return np.pad(faces, ((0, 0), (0, width - faces.shape[1])), constant_values=-1)
 
 
+def _corners(block: Any, points: int) -> Ints:
+    """Corners of a block's cells, where each has as many as its kind and all are points."""
+    size = _SURFACES.get(block.type) or int(KINDS[block.type].max()) + 1
+    corners = np.asarray(block.data, np.int64)
+    if corners.ndim != 2 or corners.shape[1] != size:
+        raise ValueError(f"a {block.type} has not {size} corners")
+    if len(corners) and not 0 <= corners.min() <= corners.max() < points:
+        raise ValueError(f"a {block.type} has a corner that is no point")
+    return corners
+
+
 def _mostly_inside_out(points: Floats, wedges: Ints) -> bool:
     a, b, c, d = (points[wedges[:, k]] for k in range(4))
     return bool((np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) < 0).mean() > 0.5)
@@ -161,7 +170,7 @@ def _patches(content: Any, boundary: Ints) -> tuple[Ints, list[str]]:
     surfaces, label = [np.empty((0, width), np.int64)], []
     for index, block in enumerate(content.cells):
         if block.type in _SURFACES:
-            surfaces.append(_widened(np.asarray(block.data, np.int64), width))
+            surfaces.append(_widened(_corners(block, len(content.points)), width))
             label += _labels(content, index, len(block.data))
     row = rows_of(_widened(boundary, width), np.concatenate(surfaces))
     names = sorted(set(label) - {UNNAMED})

@@ -27,6 +27,8 @@ from pipeline.solve.settled import change
 
 MASS_ERROR = 1e-5
 """A pressure drop counts as settled only where as much air leaves as enters, to this share."""
+LOST_MASS = 0.5
+"""A run diverges where this share of the air is lost or found between inlet and outlet."""
 _POLL = 0.3  # seconds between two looks at a run
 _SAVES = 100  # iterations between two states that a killed run continues from
 _PR_SET_PDEATHSIG = 1
@@ -215,21 +217,26 @@ def _watch(
             last = change(drops[:, 1], settings.window)
             settled = settled or (last < settings.tolerance and abs(_mass_error(work)) < MASS_ERROR)
             _tell(progress, log, drops, last, settings)
-            if not math.isfinite(drops[-1, 1]):
-                break
+            lost = len(drops) > settings.window and abs(_mass_error(work)) > LOST_MASS
+            if lost or not math.isfinite(drops[-1, 1]):
+                raise _failure(f"diverged after {drops[-1, 0]:.0f} iterations", log)
         if code is not None:
             break
         if settled or time.monotonic() > deadline:
             (work / _STOP).touch()
         time.sleep(_POLL)
-    if solver.poll() != 0 or not len(drops) or not np.isfinite(drops[:, 1]).all():
+    if code != 0 or not len(drops):
         at = f"after {drops[-1, 0]:.0f} iterations" if len(drops) else "before its first iteration"
-        raise StageError(
-            f"{log.suffix[1:]} failed {at} (exit code {solver.poll()}); check the mesh's quality, refine "
-            f"tetmesh.edge, or look into {log}, which ends:\n{read_back.tail(log)}"
-        )
+        raise _failure(f"failed {at} (exit code {code})", log)
     # the solver may also find that nothing changes any more before the window is full
     return settled or "SIMPLE solution converged" in read_back.tail(log, 40)
+
+
+def _failure(what: str, log: Path) -> StageError:
+    return StageError(
+        f"{log.suffix[1:]} {what}; check the mesh's quality, refine tetmesh.edge, or look into {log}, "
+        f"which ends:\n{read_back.tail(log)}"
+    )
 
 
 def _pressure_drops(work: Path, flow: Flow) -> Floats:
