@@ -4,7 +4,6 @@ import math
 from pathlib import Path
 
 from rich.console import Console
-from rich.markup import escape
 
 from pipeline.cli.listen import listening
 from pipeline.cli.tables import plain_table
@@ -32,7 +31,7 @@ def run_study(
             written += _drawn(study, result, folder, plot)
     if not quiet:
         for number, quantity in enumerate(result.quantities):
-            out.print(plain_table(escape(quantity.label), *_table(result, number)))
+            out.print(plain_table(quantity.label, *_table(result, number)))
         out.print()
         out.print(
             f"{result.runs} runs: {result.made} made, {result.reused} kept from before, {result.failed} failed",
