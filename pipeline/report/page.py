@@ -19,7 +19,7 @@ from pipeline.report.scenes import Subject, possible
 from pipeline.report.sections import sections, tiles
 
 PAGE = "report.html"
-_TYPESET = {"um": "µm", "m2": "m²", "m3": "m³"}
+_TYPESET = str.maketrans("u23", "µ²³")
 
 
 def write_report(content: ReportContent, folder: Path, progress: Progress = silent) -> Path:
@@ -112,10 +112,10 @@ def typeset(text: str) -> str:
 
     Examples
     --------
-    >>> typeset("1.4 um, volume [m3]")
-    '1.4 µm, volume [m³]'
+    >>> typeset("1.4 um, volume [um3]")
+    '1.4 µm, volume [µm³]'
     """
-    return re.sub(r"(?<=[ [])(um|m2|m3)\b", lambda unit: _TYPESET[unit[0]], text)
+    return re.sub(r"(?<=[ [])(um[23]?|m[23])\b", lambda unit: unit[0].translate(_TYPESET), text)
 
 
 def table_html(table: Table) -> Markup:

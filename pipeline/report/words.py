@@ -49,7 +49,7 @@ def checks(content: ReportContent) -> list[Check]:
     if content.mat is not None:
         found.append(_piece(content))
     if content.comparison is not None:
-        found += _models(content.comparison)
+        found += _models(content.comparison, content.solution)
     if content.solution is not None:
         found += _solver(content.solution)
     return found
@@ -121,14 +121,19 @@ def _piece(content: ReportContent) -> Check:
     )
 
 
-def _models(c: Comparison) -> list[Check]:
+def _models(c: Comparison, solution: Solution | None) -> list[Check]:
     low, high = c.attribution.get("model_low", 0.0), c.attribution.get("model_high", 0.0)
+    answer = (
+        "Only a solved flow decides for this mat."
+        if solution is None
+        else f"For this mat the solved flow differs from Davies' by {solution.pressure_drop / c.models['davies'].mesh - 1:+.0%}."
+    )
     found = [
         Check(
             NOTE,
             "which model is right",
             f"Models that hold for this solidity differ from Davies' by {low:+.0%} to {high:+.0%}: "
-            "they are for other arrangements of fibers. Only a solved flow decides for this mat.",
+            f"they are for other arrangements of fibers. {answer}",
         )
     ]
     if c.regime and not c.regime.startswith("continuum"):
