@@ -123,11 +123,10 @@ def _piece(content: ReportContent) -> Check:
 
 def _models(c: Comparison, solution: Solution | None) -> list[Check]:
     low, high = c.attribution.get("model_low", 0.0), c.attribution.get("model_high", 0.0)
-    answer = (
-        "Only a solved flow decides for this mat."
-        if solution is None
-        else f"For this mat the solved flow differs from Davies' by {solution.pressure_drop / c.models['davies'].mesh - 1:+.0%}."
-    )
+    answer = "Only a solved flow decides for this mat."
+    if solution is not None:
+        change = solution.pressure_drop / c.models["davies"].mesh - 1.0
+        answer = f"For this mat the solved flow differs from Davies' by {change:+.0%}."
     found = [
         Check(
             NOTE,
