@@ -355,7 +355,7 @@ def doctor() -> None:
 def main() -> None:
     """Run the command line: a user's mistake becomes one message and an exit code, a bug keeps its traceback."""
     try:
-        app(exit_on_error=False, print_error=False)
+        app(sys.argv[1:], exit_on_error=False, print_error=False)
     except CycloptsError as problem:
         err.print(f"error: {problem}; see fibertwin --help", style="red", markup=False, highlight=False, soft_wrap=True)
         raise SystemExit(WRONG_USE) from None

@@ -1,0 +1,101 @@
+"""`fibertwin init`, `cases` and `schema`: the case file before there is one."""
+
+import json
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from pipeline.case import Case, read_case
+from pipeline.cli.bundled import bundled
+from pipeline.cli.describe import keys
+from pipeline.cli.starting import first_case
+from tests.cli.conftest import Fibertwin
+
+GENERATORS = ("layered", "box", "array", "file")
+
+
+@pytest.mark.parametrize("generator", GENERATORS)
+def test_a_first_case_is_valid_as_it_stands(fibertwin: Fibertwin, generator: str, tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    assert fibertwin("init", path, "--generator", generator).code == 0
+    assert read_case(path).mat.generator == generator
+
+
+@pytest.mark.parametrize("generator", GENERATORS)
+def test_defaults_in_comments_are_what_holds_when_they_are_left_out(generator: str, tmp_path: Path) -> None:
+    text = first_case(generator)
+    shown = tmp_path / "shown.toml"
+    # every commented key becomes a real one, except examples of what is not set
+    shown.write_text(re.sub(r"^#(?=[a-z_]+ = )(?!.*this is an example)", "", text, flags=re.MULTILINE))
+    plain = tmp_path / "plain.toml"
+    plain.write_text(text)
+    assert shown.read_text().count("\n#") < text.count("\n#")
+    assert read_case(shown) == read_case(plain)
+
+
+def test_every_key_of_every_stage_stands_in_a_first_case() -> None:
+    tables = tomllib.loads(re.sub(r"^#(?=[a-z_]+ = )", "", first_case("layered"), flags=re.MULTILINE))
+    for key in keys(Case):
+        if key.name != "mat":
+            assert set(tables[key.name]) == set(key.tables[0].model_fields)
+
+
+def test_a_file_that_is_there_stays_as_it_is(fibertwin: Fibertwin, tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text("mine")
+    said = fibertwin("init", path)
+    assert said.code == 1
+    assert "is there already" in said.err
+    assert path.read_text() == "mine"
+
+
+def test_a_bundled_case_is_found_by_its_name_from_anywhere(
+    fibertwin: Fibertwin, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    said = fibertwin("run", "smoke", "--until", "mat", "--quiet")
+    assert (said.code, said.out, said.err) == (0, "", "")
+    assert (tmp_path / "runs/smoke/mat/manifest.json").is_file()
+
+
+def test_a_name_that_is_no_case_tells_which_there_are(fibertwin: Fibertwin) -> None:
+    said = fibertwin("run", "smok")
+    assert said.code == 2
+    assert all(name in said.err for name in bundled())
+
+
+def test_cases_tells_the_question_of_each(fibertwin: Fibertwin) -> None:
+    said = fibertwin("cases")
+    assert said.out.count("?") >= len(bundled())
+
+
+def test_run_in_json_tells_what_became_of_each_stage(fibertwin: Fibertwin, tmp_path: Path) -> None:
+    first, second = (fibertwin("run", "smoke", "--until", "mat", "--out", tmp_path, "--json") for _ in range(2))
+    stages = json.loads(first.out)["stages"] + json.loads(second.out)["stages"]
+    assert [(stage["stage"], stage["how"]) for stage in stages] == [("mat", "made"), ("mat", "reused")]
+    assert stages[0]["counts"]["fibers"] > 3
+
+
+def test_the_reference_in_the_docs_is_what_the_settings_say(fibertwin: Fibertwin) -> None:
+    page = Path(__file__).parents[2] / "docs/reference/case_file.md"
+    # made again by: fibertwin schema --markdown > docs/reference/case_file.md
+    assert page.read_text(encoding="utf-8") == fibertwin("schema", "--markdown").out
+
+
+def test_the_reference_has_every_key_with_its_range(fibertwin: Fibertwin) -> None:
+    said = fibertwin("schema", "--markdown").out
+    assert "| `stop_energy` | number or percentage &gt;= 3 | `100` |" in said
+    assert '| `time_limit` | time &gt; 0 | `"2 h"` |' in said
+    assert "### [mat.fiber_diameter.parts]" in said
+
+
+def test_every_command_tells_what_each_of_its_options_does(fibertwin: Fibertwin) -> None:
+    commands = re.findall(r"^│ ([a-z]+)  ", fibertwin("--help").out, re.MULTILINE)
+    assert {"run", "quality", "solve", "init", "cases", "doctor", "report", "view"} <= set(commands)
+    for command in commands:
+        text = fibertwin(command, "--help").out
+        options = re.findall(r"^│ [ *] +(\S+.*?)(?:  +(.*))?│$", text, re.MULTILINE)
+        named = [(name, meaning) for name, meaning in options if name.startswith("-") or name.isupper()]
+        assert all(meaning.strip() for _, meaning in named), (command, named)
