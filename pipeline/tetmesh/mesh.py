@@ -20,7 +20,8 @@ from pipeline.tetmesh.settings import TetmeshSettings
 from pipeline.tetmesh.size_field import size_field
 
 _SWEEPS = 20  # of mending; the last of them move next to nothing
-_FILLINGS = 6  # rounds of mending and filling crevices
+_FITS = 2  # the second makes good what mending after the first moved
+_FILLINGS = 8  # rounds of mending and filling crevices
 _PATIENCE = 3  # rounds before cells that cannot be mended are filled though a vertex of theirs could move
 _WALL_LEASH = 0.5  # envelopes that mending may move a vertex of a fiber
 _MEMORY_SHARE = 0.85  # of the machine's memory, where the case names no limit
@@ -94,20 +95,12 @@ def tetrahedralize(
     tets = _without_flat_sides(points, tets, domain.box)
 
     tell("mending the worst cells")
-    leash = _WALL_LEASH * settings.envelope * unit
     filled = 0.0
-    for filling in range(_FILLINGS):
-        tets = tets[largest_part(tets)]
-        points, tets = split_corners(points, tets)
-        points, faulty = _mended(points, tets, domain, leash)
-        crevice = in_crevice(tets, len(points), faulty, stuck=filling >= _PATIENCE)
-        if not crevice.any():
-            break
-        filled += float(volumes(points, tets[crevice]).sum())
-        tets = tets[~crevice]
-    points, tets = _used(points, tets)
-    points = fitted(points, tets, _walls(points, tets, domain), _free_axes(points, domain.box), domain.volume)
-    points, faulty = _mended(points, tets, domain, 0.0)
+    for _ in range(_FITS):
+        points, tets, faulty, tips = _settled(points, tets, domain, _WALL_LEASH * settings.envelope * unit)
+        filled += tips
+        walls = _walls(points, tets, domain)
+        points = fitted(points, tets, walls, _free_axes(points, domain.box), domain.volume)
     _check_volumes(points, tets)
 
     faces, _ = boundary(tets)
@@ -119,7 +112,7 @@ def tetrahedralize(
         volume_error=_volume_error(points, tets, domain),
         raw_volume_error=raw_error,
         filled_volume=filled / domain.volume,
-        faulty_cells=int(faulty.sum()),
+        faulty_cells=faulty,
         mesher_seconds=raw.seconds,
         mesher_peak_memory=raw.peak_memory,
     )
@@ -163,6 +156,27 @@ def _walls(points: Floats, tets: Ints, domain: FluidDomain) -> Ints:
     faces, _ = boundary(tets)
     walls: Ints = faces[assign(points, faces, domain.box, tolerance=0.0) == domain.patches.index(FIBERS)]
     return walls
+
+
+def _settled(points: Floats, tets: Ints, domain: FluidDomain, wall_leash: float) -> tuple[Floats, Ints, int, float]:
+    """Mend, fill the crevices where mending cannot help, and so on; give the state with the fewest faulty cells."""
+    filled, fewest = 0.0, len(tets) + 1
+    best = (points, tets, fewest, filled)
+    for filling in range(_FILLINGS):
+        tets = tets[largest_part(tets)]
+        points, tets = split_corners(points, tets)
+        points, faulty = _mended(points, tets, domain, wall_leash)
+        # a flat cell is worse than any number of merely bad ones
+        count = int(faulty.sum()) + len(tets) * int((volumes(points, tets) <= 0.0).sum())
+        if count < best[2]:
+            best = (points, tets, count, filled)
+        crevice = in_crevice(tets, len(points), faulty, stuck=filling >= _PATIENCE)
+        if not crevice.any():
+            break
+        filled += float(volumes(points, tets[crevice]).sum())
+        tets = tets[~crevice]
+    points, tets = _used(*best[:2])
+    return points, tets, best[2], best[3]
 
 
 def _mended(points: Floats, tets: Ints, domain: FluidDomain, wall_leash: float) -> tuple[Floats, npt.NDArray[np.bool_]]:
