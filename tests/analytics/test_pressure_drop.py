@@ -12,7 +12,7 @@ from pipeline.analytics import pressure_drop as formulas
 from pipeline.analytics import slip, spielman_goren
 from pipeline.analytics.pressure_models import MODELS, pressure_model
 from pipeline.errors import CaseError
-from tests.analytics.exact_arrays import hexagonal_drag, square_drag
+from pipeline.verify.exact import hexagonal_drag, square_drag
 
 EULER = 0.5772156649015329
 

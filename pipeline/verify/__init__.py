@@ -1,0 +1,1 @@
+"""Exact drag against ours: arrays of fibers through the whole line, and how far a mat's answer depends on the mesh."""
