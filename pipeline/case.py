@@ -19,8 +19,12 @@ from pipeline.surface.settings import SurfaceSettings
 from pipeline.tetmesh.settings import TetmeshSettings
 from pipeline.units import FROM_FILE
 
-LARGEST_FILE = 1_000_000
+LARGEST_FILE = 100_000
 """No case file is larger than this many bytes: a larger one is something else."""
+
+DEEPEST = 20
+"""No case file nests more tables than this into each other; what walks through them may be recursive."""
+_MOST_MISTAKES, _LONGEST_LINE = 20, 400
 
 _Settings = TypeVar("_Settings", bound=BaseModel)
 
@@ -64,15 +68,33 @@ def read_toml(path: Path) -> dict[str, Any]:
         If the file cannot be read or is no TOML.
     """
     try:
-        if path.is_file() and path.stat().st_size > LARGEST_FILE:
-            raise CaseError(f"{path} has {path.stat().st_size} bytes; a case file may have {LARGEST_FILE}")
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        with path.open("rb") as file:
+            # not the file's own word for its size: a device has none and never ends
+            content = file.read(LARGEST_FILE + 1)
+        if len(content) > LARGEST_FILE:
+            raise CaseError(f"{path} has more than {LARGEST_FILE:,} bytes, which no case file needs: is it one?")
+        return _shallow(tomllib.loads(content.decode("utf-8")), str(path))
     except OSError as problem:
         raise CaseError(f"cannot read the case file {path}: {problem.strerror}") from problem
     except UnicodeDecodeError as problem:
         raise CaseError(f"{path} is not a text file in UTF-8: {problem.reason} at byte {problem.start}") from problem
-    except (tomllib.TOMLDecodeError, RecursionError) as problem:
+    except (ValueError, RecursionError) as problem:
+        # a ValueError beside TOML's own: an integer of thousands of digits
         raise CaseError(f"{path} is not valid TOML: {problem}") from problem
+
+
+def _shallow(content: dict[str, Any], source: str) -> dict[str, Any]:
+    level: list[Any] = [content]
+    for _ in range(DEEPEST):
+        level = [
+            inner
+            for outer in level
+            for inner in (outer.values() if isinstance(outer, dict) else outer)
+            if isinstance(inner, dict | list)
+        ]
+    if level:
+        raise CaseError(f"{source} nests tables or lists more than {DEEPEST} deep; a case file needs 5")
+    return content
 
 
 def override(content: dict[str, Any], overrides: tuple[str, ...]) -> dict[str, Any]:
@@ -95,7 +117,7 @@ def override(content: dict[str, Any], overrides: tuple[str, ...]) -> dict[str, A
     for text in overrides:
         path, equals, value = text.partition("=")
         keys = path.strip().split(".")
-        if not equals or not all(keys):
+        if not equals or not all(keys) or len(keys) > DEEPEST:
             raise CaseError(f"--set {text!r}: write table.key=value, like --set mat.seed=7")
         table = result
         for depth, key in enumerate(keys[:-1]):
@@ -115,8 +137,8 @@ def _copy(content: dict[str, Any]) -> dict[str, Any]:
 
 def _toml_value(text: str) -> Any:
     try:
-        return tomllib.loads(f"value = {text}")["value"]
-    except (tomllib.TOMLDecodeError, RecursionError):
+        return _shallow(tomllib.loads(f"value = {text}"), "--set")["value"]
+    except (ValueError, RecursionError):
         return text
 
 
@@ -142,9 +164,17 @@ def validate_as(kind: type[_Settings], content: dict[str, Any], source: str) -> 
     try:
         return kind.model_validate(content, context=FROM_FILE)
     except ValidationError as problem:
-        lines = [_line(error, content) for error in problem.errors(include_url=False)]
-        count = f"{len(lines)} mistakes" if len(lines) > 1 else "a mistake"
+        errors = problem.errors(include_url=False)
+        lines = [_shortened(_line(error, content)) for error in errors[:_MOST_MISTAKES]]
+        if len(errors) > _MOST_MISTAKES:
+            lines.append(f"and {len(errors) - _MOST_MISTAKES} more")
+        count = f"{len(errors)} mistakes" if len(errors) > 1 else "a mistake"
         raise CaseError(f"{source} has {count}:\n" + "\n".join(f"  {line}" for line in lines)) from None
+
+
+def _shortened(line: str) -> str:
+    # a message quotes what was written, which may be a novel
+    return line if len(line) <= _LONGEST_LINE else f"{line[:_LONGEST_LINE]} ..."
 
 
 def _line(error: Any, content: dict[str, Any]) -> str:

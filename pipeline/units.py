@@ -15,9 +15,13 @@ from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema
 if TYPE_CHECKING:
     import pint
 
-# A product of one number and one unit: pint would also evaluate formulas, which is no business of a case file.
+# A product of one number and one unit: pint would also evaluate formulas, which is no business of a case file, and
+# "m^9^9^9^9" would keep it busy for good: each name takes one exponent of at most two digits.
+_NAME = r"[A-Za-zµμ°%]{1,24}[0-9]?(?:\s?(?:\^|\*\*)\s?-?\d{1,2})?"
 _NUMBER_AND_UNIT = re.compile(
-    r"\s*(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(?P<unit>[A-Za-zµμ°%][A-Za-z0-9µμ°%/*^ -]{0,30}|)\s*"
+    rf"\s*(?P<number>[-+]?(?:\d{{1,40}}\.?\d{{0,40}}|\.\d{{1,40}})(?:[eE][-+]?\d{{1,4}})?)"
+    rf"\s*(?P<unit>{_NAME}(?:\s?[*/ ]\s?{_NAME}){{0,5}}|)\s*",
+    re.ASCII,
 )
 
 _RATIO_UNITS = ("", "%", "percent")

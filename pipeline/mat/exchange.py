@@ -19,6 +19,8 @@ _COLUMNS = ("fiber", "x", "y", "z", "radius")
 _HEADER = re.compile(r"\s*(?P<name>\w+)\s*(?:\[\s*(?P<unit>[^\]]+?)\s*\])?\s*")
 _NOTE = re.compile(r"#\s*(?P<key>plan|thickness|periodic)\s*:\s*(?P<value>.*?)\s*")
 _PER_METER = 1e6
+LARGEST_FILE = 200_000_000
+"""No file of fibers is larger than this many bytes: as Python's own numbers its points take ten times as much."""
 
 
 @dataclass
@@ -116,11 +118,17 @@ def read_fibers(path: Path, side: float | None = None, periodic: bool | None = N
         If the file is wrong, with the line, the column and the reason.
     """
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        with path.open("rb") as file:
+            content = file.read(LARGEST_FILE + 1)
+        if len(content) > LARGEST_FILE:
+            raise CaseError(f"{path} has more than {LARGEST_FILE:,} bytes; leave out points on straight pieces")
+        text = content.decode("utf-8-sig")
     except OSError as problem:
         raise CaseError(f"cannot read the fibers of {path}: {problem.strerror}") from problem
     except UnicodeDecodeError as problem:
         raise CaseError(f"{path} is not a text file in UTF-8: {problem.reason} at byte {problem.start}") from problem
+    except ValueError as problem:
+        raise CaseError(f"cannot read the fibers of {str(path)!r}: {problem}") from problem
     notes, fibers = _Notes(), _Fibers()
     rows = _rows(text, notes, path)
     number, header = next(rows, (1, []))
