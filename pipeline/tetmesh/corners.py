@@ -13,6 +13,7 @@ center is not determined (OpenFOAM's cell determinant is 0), and `checkMesh -all
 """
 
 import numpy as np
+import numpy.typing as npt
 
 from pipeline.data import Floats, Ints
 from pipeline.geometry.tets import FACES, boundary
@@ -48,6 +49,28 @@ def split_corners(points: Floats, tets: Ints) -> tuple[Floats, Ints]:
         else:
             break
     return points, tets
+
+
+def split_longest(points: Floats, tets: Ints, chosen: npt.NDArray[np.bool_]) -> tuple[Floats, Ints]:
+    """Split the longest edge of some cells, which gives the mender a vertex more to move there.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+    tets : (m, 4) int array
+        Positive tetrahedra.
+    chosen : (m,) bool array
+
+    Returns
+    -------
+    points : (n + k, 3) array
+    tets : (m + j, 4) int array
+        Positive; they fill the same space. Of neighboring edges only one is split.
+    """
+    ends = tets[chosen][:, _EDGES]
+    lengths = np.linalg.norm(points[ends[..., 1]] - points[ends[..., 0]], axis=2)
+    longest = ends[np.arange(len(ends)), lengths.argmax(axis=1)]
+    return _with_midpoints(points, tets, np.sort(longest, axis=1))
 
 
 def _with_centers(points: Floats, tets: Ints, chosen: Ints) -> tuple[Floats, Ints]:

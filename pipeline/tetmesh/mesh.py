@@ -13,7 +13,7 @@ from pipeline.geometry.tets import boundary, volumes
 from pipeline.geometry.triangles import area_vectors
 from pipeline.progress import Progress, silent
 from pipeline.tetmesh.child import Limits, Meshed, run_child
-from pipeline.tetmesh.corners import split_corners
+from pipeline.tetmesh.corners import split_corners, split_longest
 from pipeline.tetmesh.crevices import in_crevice, largest_part
 from pipeline.tetmesh.fit import fitted
 from pipeline.tetmesh.patches import assign, flattened, planes
@@ -192,11 +192,14 @@ def _settled(points: Floats, tets: Ints, domain: FluidDomain, wall_leash: float)
         count = int(faulty.sum()) + len(tets) * int((volumes(points, tets) <= 0.0).sum())
         if count < best[2]:
             best = (points, tets, count, filled)
-        crevice = in_crevice(tets, len(points), faulty, stuck=filling >= _PATIENCE)
-        if not crevice.any():
+        if not faulty.any():
             break
+        stuck = filling >= _PATIENCE
+        crevice = in_crevice(tets, len(points), faulty, stuck)
         filled += float(volumes(points, tets[crevice]).sum())
-        tets = tets[~crevice]
+        tets, faulty = tets[~crevice], faulty[~crevice]
+        if stuck and faulty.any():
+            points, tets = split_longest(points, tets, faulty)
     points, tets = _used(*best[:2])
     return points, tets, best[2], best[3]
 

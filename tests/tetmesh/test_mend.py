@@ -4,7 +4,7 @@ import pytest
 
 from pipeline.data import Floats, Ints
 from pipeline.geometry.tets import boundary, volumes
-from pipeline.tetmesh.corners import split_corners
+from pipeline.tetmesh.corners import split_corners, split_longest
 from pipeline.tetmesh.crevices import in_crevice, largest_part
 from pipeline.tetmesh.fit import fitted
 from pipeline.tetmesh.mend import mended
@@ -104,3 +104,16 @@ def test_the_largest_part_is_kept() -> None:
     _, tets = kuhn_box(2)
     apart: Ints = np.concatenate([tets, np.array([[100, 101, 102, 103]])])
     np.testing.assert_array_equal(largest_part(apart), np.arange(len(apart)) < len(tets))
+
+
+def test_splitting_the_longest_edges_fills_the_same_space() -> None:
+    points, tets = kuhn_box(3)
+    chosen = np.zeros(len(tets), dtype=bool)
+    chosen[[3, 40, 41, 100]] = True
+    more_points, more_tets = split_longest(points, tets, chosen)
+    assert len(more_tets) > len(tets)
+    assert (volumes(more_points, more_tets) > 0).all()
+    assert volumes(more_points, more_tets).sum() == pytest.approx(1.0, rel=1e-14)
+    new = more_points[len(points) :]
+    # a cube's diagonal is the longest edge of each of its cells: its middle is the cube's
+    assert np.allclose(new * 6 % 2, 1.0)
