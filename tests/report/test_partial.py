@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from pipeline import run as line
 from pipeline.report.render import Pictures
+from pipeline.run import Run, content_of, report, run
 from tests.report.contents import CASE
 from tests.report.pages import read
 
@@ -20,26 +20,26 @@ def _no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_run_until_its_mat_has_a_report_of_its_mat(tmp_path: Path) -> None:
-    line.run(CASE, tmp_path, until="mat")
-    page = read(line.report(tmp_path).read_text(encoding="utf-8"))
+    run(CASE, tmp_path, until="mat")
+    page = read(report(tmp_path).read_text(encoding="utf-8"))
     assert {"mat", "provenance"} <= set(page.values("id"))
     assert "mesh" not in page.values("id")
 
 
 def test_results_of_another_case_are_left_out_and_named(tmp_path: Path) -> None:
-    line.run(CASE, tmp_path, until="enclosure")
+    run(CASE, tmp_path, until="enclosure")
     other = CASE.model_copy(update={"mat": CASE.mat.model_copy(update={"seed": 8})})
-    line.run(other, tmp_path, until="mat")
-    content = line.content_of(line.Run.opened(tmp_path))
+    run(other, tmp_path, until="mat")
+    content = content_of(Run.opened(tmp_path))
     assert content.left_out == ("surface", "enclosure")
     assert content.surface is None
     assert content.mat is not None
-    page = read(line.report(tmp_path).read_text(encoding="utf-8"))
+    page = read(report(tmp_path).read_text(encoding="utf-8"))
     assert any("surface, enclosure" in text for text in page.text)
 
 
 def test_every_stage_tells_what_it_cost(tmp_path: Path) -> None:
-    line.run(CASE, tmp_path, until="surface")
+    run(CASE, tmp_path, until="surface")
     manifest = json.loads((tmp_path / "surface" / "manifest.json").read_text(encoding="utf-8"))
     assert manifest["seconds"] > 0
     # numpy alone takes tens of megabytes; a mistake of units would be off by 1024

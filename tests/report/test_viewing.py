@@ -1,20 +1,20 @@
-"""`fibertwin view`: pictures of a run from the command line."""
+"""`fibertwin view`: pictures of a run from the command"""
 
 from pathlib import Path
 
 import pytest
 from PIL import Image
 
-from pipeline import run as line
 from pipeline.cli.viewing import view_run
 from pipeline.errors import CaseError, StageError
+from pipeline.run import run
 from tests.report.contents import CASE
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("viewed") / "run"
-    line.run(CASE, folder, until="mat")
+    run(CASE, folder, until="mat")
     return folder
 
 
