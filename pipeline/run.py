@@ -321,7 +321,12 @@ LAST = [stage.name for stage in LINE if not stage.asked][-1]
 
 
 def run(
-    case: Case, folder: Path, until: str = LAST, force: frozenset[str] = frozenset(), tell: Progress = silent
+    case: Case,
+    folder: Path,
+    until: str = LAST,
+    force: frozenset[str] = frozenset(),
+    tell: Progress = silent,
+    without: frozenset[str] = frozenset(),
 ) -> list[Outcome]:
     """Run the line for a case, stage by stage, and reuse what still holds.
 
@@ -335,6 +340,8 @@ def run(
     force : frozenset of str
         Stages to make again though they hold.
     tell : Progress
+    without : frozenset of str
+        Stages to leave out, as a program that runs many cases leaves out the report.
 
     Returns
     -------
@@ -351,7 +358,8 @@ def run(
     with store.locked(folder):
         store.write_json(folder / CASE, case.model_dump(mode="json"))
         for stage in _wanted(until):
-            outcomes.append(_step(stage, this, stage.name in force, tell))
+            if stage.name not in without:
+                outcomes.append(_step(stage, this, stage.name in force, tell))
     return outcomes
 
 
