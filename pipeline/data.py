@@ -374,6 +374,11 @@ class FaceMesh:
         _check(_all_within(self.neighbour, self.cells), "a face has a neighbour that is no cell")
         internal = len(self.neighbour)
         _check(internal <= len(self.owner), "there are more neighbours than owners")
+        # a label that lies would make every array over the cells huge
+        _check(
+            self.cells <= len(self.owner) + internal,
+            f"its labels speak of {self.cells} cells, but it has only {len(self.owner)} faces",
+        )
         _check(bool((self.owner[:internal] < self.neighbour).all()), "an owner is not below its neighbour")
         end = internal
         for patch in self.patches:

@@ -9,6 +9,7 @@ from cyclopts import App, CycloptsError, Parameter
 from rich.console import Console
 
 from pipeline.cli.bundled import found
+from pipeline.cli.printable import printable
 from pipeline.errors import FibertwinError
 
 app = App(
@@ -360,7 +361,7 @@ def main() -> None:
         err.print(f"error: {problem}; see fibertwin --help", style="red", markup=False, highlight=False, soft_wrap=True)
         raise SystemExit(WRONG_USE) from None
     except FibertwinError as problem:
-        err.print(f"error: {problem}", style="red", markup=False, highlight=False, soft_wrap=True)
+        err.print(f"error: {printable(str(problem))}", style="red", markup=False, highlight=False, soft_wrap=True)
         raise SystemExit(problem.exit_code) from None
     except KeyboardInterrupt:
         err.print("stopped; finished stages are kept, and the same command continues")

@@ -9,6 +9,7 @@ from rich.console import Console
 
 from pipeline.case import read_case
 from pipeline.cli.listen import listening
+from pipeline.cli.printable import printable
 from pipeline.cli.tables import quality_table
 from pipeline.data import FaceMesh, QualityReport
 from pipeline.export import read_mesh
@@ -46,6 +47,6 @@ def _show(report: QualityReport) -> None:
     out = Console()
     out.print(quality_table(report))
     patches = ", ".join(f"{name} {count:,}" for name, count in report.patches.items())
-    out.print(f"patches by faces: {patches}", markup=False, highlight=False, soft_wrap=True)
+    out.print(f"patches by faces: {printable(patches)}", markup=False, highlight=False, soft_wrap=True)
     for reason in report.reasons:
         out.print(f"- {reason}", markup=False, highlight=False, soft_wrap=True)

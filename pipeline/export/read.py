@@ -1,6 +1,11 @@
 """Meshes that are not ours: an OpenFOAM case, Fluent, or any file that meshio reads."""
 
+import contextlib
+import resource
+from collections.abc import Iterator
 from pathlib import Path
+
+import psutil
 
 from pipeline.data import FaceMesh
 from pipeline.errors import StageError
@@ -28,6 +33,28 @@ def read_mesh(path: Path) -> FaceMesh:
     StageError
         If the path is no mesh, or the mesh is damaged.
     """
+    try:
+        with _memory_bounded():
+            return _read(path)
+    except MemoryError:
+        raise StageError(f"cannot read {path}: it asks for more memory than this machine has free") from None
+
+
+@contextlib.contextmanager
+def _memory_bounded() -> Iterator[None]:
+    """End what would take more than the machine's free memory: a few bytes of a compressed file can ask for that."""
+    _, hard = before = resource.getrlimit(resource.RLIMIT_AS)
+    bound = psutil.Process().memory_info().vms + psutil.virtual_memory().available
+    if before[0] != resource.RLIM_INFINITY:
+        bound = min(bound, before[0])
+    resource.setrlimit(resource.RLIMIT_AS, (bound, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, before)
+
+
+def _read(path: Path) -> FaceMesh:
     if path.suffix == ".foam":
         path = path.parent
     if path.is_dir():

@@ -1,5 +1,7 @@
 """Reads what meshio reads: the cells as faces between an owner and a neighbour, the surfaces as patches."""
 
+import contextlib
+import io
 import struct
 import zlib
 from pathlib import Path
@@ -80,7 +82,9 @@ def _load(path: Path) -> Any:
     problems = []
     for kind in kinds:
         try:
-            return reader_map[kind](str(path))
+            # meshio prints a line for each line that it cannot read: what it makes of the file is what counts
+            with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+                return reader_map[kind](str(path))
         except (meshio.ReadError, *_DAMAGE) as problem:
             problems.append(f"as {kind}: {type(problem).__name__} {problem}".strip())
     raise StageError(f"cannot read {path}: " + "; ".join(problems))

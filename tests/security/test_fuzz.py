@@ -1,0 +1,14 @@
+"""A few inputs for every reader in each run of the tests; docs/security.md tells of the many."""
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from tests.security.inputs import TARGETS
+
+
+@pytest.mark.parametrize("name", TARGETS)
+@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@given(data=st.data())
+def test_only_a_result_or_our_own_error_comes_out(name: str, data: st.DataObject) -> None:
+    TARGETS[name](data)
