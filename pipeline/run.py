@@ -19,6 +19,7 @@ from pipeline.data import Comparison, FluidDomain, Mat, QualityReport, Solution,
 from pipeline.enclosure.duct import enclose
 from pipeline.errors import StageError
 from pipeline.export import FiberSlip, export, fiber_radius
+from pipeline.export.openfoam.dictionaries import SOLVER
 from pipeline.geometry.tets import volume_between
 from pipeline.mat import ArraySettings, BoxSettings, FileSettings, LayeredSettings, MatMeasures, generate, measure
 from pipeline.mat.exchange import write_fibers
@@ -244,7 +245,7 @@ def _parallel_length(run: Run, comparison: Comparison) -> float | None:
 def _no_solver(run: Run) -> str | None:
     if "openfoam" not in run.case.export.formats:
         return "export.formats lacks openfoam, the solver's format"
-    return openfoam_missing(run.case.solve.cores)
+    return openfoam_missing(run.case.solve.cores, SOLVER[run.case.export.dialect])
 
 
 def _make_report(run: Run, into: Path, tell: Progress) -> Counts:
