@@ -184,6 +184,8 @@ def _line(error: Any, content: dict[str, Any]) -> str:
     value = error.get("input")
     match error["type"]:
         case "extra_forbidden":
+            if keys[-1] in _known(keys[:-1]):
+                return f"{place}: does not go with {_kind_of(keys[:-1], content)}; leave it out"
             near = difflib.get_close_matches(keys[-1], _known(keys[:-1]), n=1)
             advice = f"did you mean {near[0]}?" if near else f"known: {', '.join(_known(keys[:-1])) or 'none'}"
             return f"{place}: unknown key; {advice}"
@@ -200,6 +202,16 @@ def _is_key(key: str, loc: tuple[object, ...], content: dict[str, Any]) -> bool:
 
 
 _TAGS = {"layered", "box", "array", "file", "constant", "normal", "lognormal", "uniform", "mixture", "float"}
+
+
+def _kind_of(tables: list[str], content: dict[str, Any]) -> str:
+    table: Any = content
+    for key in tables:
+        table = table.get(key, {}) if isinstance(table, dict) else {}
+    for tag in ("generator", "distribution", "law"):
+        if isinstance(table, dict) and tag in table:
+            return f"{'.'.join([*tables, tag])} = {table[tag]!r}"
+    return f"the other keys of {'.'.join(tables) or 'the case'}"
 
 
 def _known(tables: list[str]) -> list[str]:

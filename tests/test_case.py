@@ -52,6 +52,7 @@ def test_lengths_are_meters_inside() -> None:
         ("mat.relaxation_slope='steep'", "mat.relaxation_slope", "steep"),
         ("mat.sides='20 um'", "mat.sides", "did you mean side?"),
         ("mat.generator='woven'", "mat.generator", "layered"),
+        ("mat.generator='box'", "mat.relaxation_slope", "does not go with mat.generator = 'box'"),
         ("tetmesh.engine='gmsh'", "tetmesh.engine", "tetwild"),
         ("flow.face_velocity='0 m/s'", "flow.face_velocity", "greater than 0"),
         ("quality.skewness=0", "quality.skewness", "greater than 0"),
