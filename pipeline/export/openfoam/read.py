@@ -120,7 +120,7 @@ class _List:
 def _numbers(text: bytes, kind: np.dtype[np.generic], name: str) -> npt.NDArray[np.generic]:
     try:
         return np.array(text.split(), dtype=kind)
-    except ValueError as problem:
+    except (ValueError, OverflowError) as problem:
         raise ValueError(f"{name}: {problem}") from None
 
 
