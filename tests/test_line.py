@@ -261,3 +261,17 @@ def test_manifests_say_what_made_each_stage(smoke: Run) -> None:
         for name, digest in manifest["files"].items():
             assert store.file_digest(smoke.folder / stage / name) == digest
             assert re.fullmatch("[0-9a-f]{64}", digest)
+
+
+def test_pyvistas_own_reader_takes_the_openfoam_case(smoke: Run) -> None:
+    import pyvista
+
+    reader = pyvista.OpenFOAMReader(smoke.folder / "export" / "openfoam" / "case.foam")
+    blocks = reader.read()
+    internal = blocks["internalMesh"]
+    assert internal.n_cells == smoke.quality.cells
+    # its points are 32-bit floats
+    assert internal.volume == pytest.approx(smoke.mesh.volume, rel=1e-4)
+    # a MultiBlock iterates over its blocks, not over their names
+    faces = {name: blocks["boundary"][name].n_cells for name in blocks["boundary"].keys()}  # noqa: SIM118
+    assert faces == smoke.quality.patches
