@@ -18,6 +18,8 @@ from pipeline.errors import StageError
 from pipeline.progress import Progress
 from pipeline.tetmesh import worker
 
+# What fTetWild's log says at the start of each pass, and at the end of each round that refines by the size field.
+_ROUND = re.compile(rb"/ pass (\d+) /|^/{9}(\d+) ", re.MULTILINE)
 _POLL = 0.2  # seconds between two looks at the child
 _TAIL = 5  # lines of the child's log that an error quotes
 
@@ -95,7 +97,7 @@ def run_child(
 def _watch(child: "subprocess.Popen[bytes]", log: Path, passes: int, limits: Limits, tell: Progress) -> int:
     process = psutil.Process(child.pid)
     began, peak, read = time.monotonic(), 0, 0
-    state = "inserting the surface"
+    state, share = "inserting the surface", 0.0
     while child.poll() is None:
         time.sleep(_POLL)
         try:
@@ -118,12 +120,13 @@ def _watch(child: "subprocess.Popen[bytes]", log: Path, passes: int, limits: Lim
             file.seek(read)
             news = file.read()
             read += len(news)
-        found = re.findall(rb"/ pass (\d+) /", news)
+        found = _ROUND.findall(news)
         if found:
-            state = f"in pass {int(found[-1]) + 1} of {passes}"
-        # the passes take about four fifths of the time, the insertion before them the rest
-        share = 0.2 + 0.8 * int(found[-1]) / passes if found else None
-        if share is not None or news:
+            before, after = found[-1]
+            state = f"in pass {int(before) + 1} of {passes}" if before else f"refining, round {int(after) + 2}"
+            # the passes take about a third of the time, the insertion before them and the refining after them the rest
+            share = 0.2 + (0.3 * int(before) / passes if before else 0.3 + min(0.4, 0.2 * int(after)))
+        if news:
             tell(f"fTetWild, {state}", share)
     return peak
 
