@@ -197,17 +197,23 @@ def locked(folder: Path) -> Iterator[None]:
     StageError
         If another process is running in the folder, or the folder cannot be written.
     """
-    with disk_trouble_explained(folder):
+    try:
         if folder.exists() and not folder.is_dir():
             raise StageError(f"{folder} is a file; choose another folder with --out")
         folder.mkdir(parents=True, exist_ok=True)
-        with (folder / ".lock").open("w") as lock:
-            try:
-                # the system lets go of it when the process ends, however it ends
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                raise StageError(f"another run is writing {folder}; wait for it, or choose another --out") from None
-            yield
+        lock = (folder / ".lock").open("w")
+    except OSError as problem:
+        raise StageError(
+            f"cannot write {problem.filename or folder}: {os.strerror(problem.errno or 0).lower()}; "
+            "choose another folder with --out"
+        ) from problem
+    with lock, disk_trouble_explained(folder):
+        try:
+            # the system lets go of it when the process ends, however it ends
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise StageError(f"another run is writing {folder}; wait for it, or choose another --out") from None
+        yield
 
 
 def write_manifest(stage: Path, content: dict[str, Any]) -> None:

@@ -105,6 +105,10 @@ def test_a_file_in_the_folders_place_is_refused(tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("")
     with pytest.raises(StageError, match="is a file"), store.locked(tmp_path / "taken"):
         pass
+    with pytest.raises(StageError, match="cannot write"), store.locked(tmp_path / ("x" * 300)):
+        pass
+    with pytest.raises(StageError, match="cannot write"), store.locked(Path("/proc/fibertwin")):
+        pass
 
 
 def test_json_holds_arrays_and_dataclasses_and_no_not_a_number(tmp_path: Path) -> None:
