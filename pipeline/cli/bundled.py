@@ -1,5 +1,6 @@
 """The case files that come with fibertwin: found by their bare name, in a checkout and in an installed package."""
 
+import difflib
 from pathlib import Path
 
 from pipeline.errors import CaseError
@@ -35,7 +36,9 @@ def found(path: Path) -> Path:
     known = bundled()
     if path.as_posix() in known:
         return known[path.as_posix()]
-    raise CaseError(f"there is no file {path}, and no bundled case of that name; bundled are {', '.join(known)}")
+    near = difflib.get_close_matches(path.stem, known, n=1)
+    advice = f"did you mean {near[0]}?" if near else "fibertwin cases lists them"
+    raise CaseError(f"there is no file {path}, and no bundled case of that name; {advice}")
 
 
 def story(path: Path) -> str:

@@ -50,7 +50,7 @@ def duration(seconds: float) -> str:
     return f"{minutes} min {rest} s"
 
 
-_PERCENT = {"solidity", "mesh_solidity", "volume_error", "force_balance_error"}
+_PERCENT = {"solidity", "mesh_solidity", "efficiency", "volume_error", "force_balance_error"}
 _UNITS = {"fluid_volume": ("um3", 1e18), "max_non_orthogonality": ("deg", 1.0), "pressure_drop": ("Pa", 1.0)}
 
 
@@ -62,7 +62,7 @@ def _count(name: str, value: object) -> str:
     if isinstance(value, bool):
         return label if value else f"not {label}"
     if isinstance(value, int | float) and name in _PERCENT:
-        return f"{label} {100 * value:.3g} %"
+        return f"{label} {100 * value:.4g} %"
     if isinstance(value, int | float) and name in _UNITS:
         unit, per_si = _UNITS[name]
         return f"{label} {value * per_si:,.4g} {unit}"

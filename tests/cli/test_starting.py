@@ -60,10 +60,10 @@ def test_a_bundled_case_is_found_by_its_name_from_anywhere(
     assert (tmp_path / "runs/smoke/mat/manifest.json").is_file()
 
 
-def test_a_name_that_is_no_case_tells_which_there_are(fibertwin: Fibertwin) -> None:
+def test_a_name_that_is_no_case_tells_the_nearest(fibertwin: Fibertwin) -> None:
     said = fibertwin("run", "smok")
     assert said.code == 2
-    assert all(name in said.err for name in bundled())
+    assert "did you mean smoke?" in said.err
 
 
 def test_cases_tells_the_question_of_each(fibertwin: Fibertwin) -> None:

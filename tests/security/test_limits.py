@@ -21,6 +21,14 @@ from tests.sample_meshes import duct
 from tests.security.inputs import in_time
 
 
+def test_a_label_of_forty_digits_is_our_error(tmp_path: Path) -> None:
+    write_openfoam(duct((2, 2, 3)).face_mesh(), tmp_path, AIR, settings=ExportSettings(encoding="ascii"))
+    faces = tmp_path / "constant/polyMesh/faces"
+    faces.write_text(faces.read_text().replace("3(", "9" * 40 + "(", 1))
+    with pytest.raises(StageError, match="cannot read the mesh"):
+        read_mesh(tmp_path)
+
+
 @pytest.mark.parametrize("text", ["1 m^9^9^9^9", "1 m**9**9**9**9", "1 m^999999999"])
 def test_a_unit_is_no_formula_that_computes_for_good(text: str) -> None:
     with in_time(), pytest.raises(ValueError, match="number with a unit"):
