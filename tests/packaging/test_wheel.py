@@ -32,7 +32,7 @@ def test_a_clean_environment_runs_a_bundled_case_outside_the_checkout(wheel: Pat
     environment = tmp_path / "clean"
     subprocess.run([sys.executable, "-m", "venv", environment], check=True)
     constraints = ROOT / "constraints.txt"
-    pip = [environment / "bin/python", "-m", "pip", "install", "--quiet"]
+    pip: list[str | Path] = [environment / "bin/python", "-m", "pip", "install", "--quiet"]
     subprocess.run([*pip, "--constraint", constraints, wheel], check=True)
     subprocess.run([environment / "bin/fibertwin", "run", "smoke", "--until", "surface"], cwd=tmp_path, check=True)
     assert (tmp_path / "runs/smoke/surface/surface.stl").is_file()
