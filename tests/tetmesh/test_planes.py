@@ -6,7 +6,7 @@ import pytest
 from pipeline.data import FIBERS, PATCHES, Floats, FluidDomain, Ints, TetMesh
 from pipeline.geometry.box import Box
 from pipeline.geometry.tets import boundary
-from pipeline.tetmesh.mesh import _plane_errors
+from pipeline.tetmesh.mesh import _at_fibers, _plane_errors
 from pipeline.tetmesh.patches import assign
 from tests.tetmesh.boxes import kuhn_box
 
@@ -47,3 +47,13 @@ def test_a_dent_is_missing_from_its_plane(axis: int, name: str) -> None:
     errors = _plane_errors(points, np.delete(tets, inner[0], axis=0), whole)
     assert errors.pop(name) == pytest.approx(-1 / 50)
     assert list(errors.values()) == pytest.approx([0.0] * 5, abs=1e-14)
+
+
+def test_only_cells_with_a_vertex_on_a_fiber_may_be_given_to_it() -> None:
+    points, tets = hollow_box()
+    near = _at_fibers(points, tets, domain_of(mesh_of(points, tets)))
+    # the fiber is the cube from 0.4 to 0.6
+    on_cube = np.asarray(((points > 0.39) & (points < 0.61)).all(axis=1))
+    np.testing.assert_array_equal(near, on_cube[tets].any(axis=1))
+    assert near.any()
+    assert not near.all()
