@@ -58,7 +58,7 @@ def write_openfoam(
     for name, text in foam.format_constant(flow, settings.dialect).items():
         _write(folder / "constant" / name, text)
     _write(folder / "system/controlDict", foam.format_control_dict(flow, settings.dialect))
-    _write(folder / "system/fvSchemes", foam.format_fv_schemes())
+    _write(folder / "system/fvSchemes", foam.format_fv_schemes(cyclic=sides == "cyclic"))
     _write(folder / "system/fvSolution", foam.format_fv_solution())
     _write(folder / "system/decomposeParDict", foam.format_decompose(2))
     _write(folder / "case.foam", "")
