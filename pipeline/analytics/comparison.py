@@ -34,7 +34,7 @@ def compare(mat: Mat, surface_solidity: float, mesh_solidity: float, flow: Flow)
     Returns
     -------
     Comparison
-        In each row, nominal + overlap + meshing = mesh. ``attribution`` tells the same of `REFERENCE` in relative
+        Models without an answer at one of the solidities are left out. In each row, nominal + overlap + meshing = mesh. ``attribution`` tells the same of `REFERENCE` in relative
         terms, beside the spread of all models that are within their solidity range.
     """
     solidity = {"nominal": nominal_solidity(mat), "surface": surface_solidity, "mesh": mesh_solidity}
@@ -65,7 +65,9 @@ def compare(mat: Mat, surface_solidity: float, mesh_solidity: float, flow: Flow)
             notes=model.notes(mesh_solidity, kn, re),
         )
 
-    rows = {name: row(model) for name, model in MODELS.items()}
+    every = {name: row(model) for name, model in MODELS.items()}
+    # dense mats lie beyond the pole of some dilute models, which then have no answer
+    rows = {name: row for name, row in every.items() if min(_drops(row)) > 0.0 and max(_drops(row)) < math.inf}
     return Comparison(
         solidity=solidity,
         thickness=mat.thickness,
@@ -78,6 +80,10 @@ def compare(mat: Mat, surface_solidity: float, mesh_solidity: float, flow: Flow)
         attribution=_attribute(rows, mesh_solidity),
         fiber_diameters=diameters,
     )
+
+
+def _drops(row: ModelRow) -> tuple[float, float, float]:
+    return (row.nominal, row.surface, row.mesh)
 
 
 def _attribute(rows: dict[str, ModelRow], solidity: float) -> dict[str, float]:

@@ -18,6 +18,7 @@ from pipeline.analytics.tables import comparison_tables
 from pipeline.data import Mat
 from pipeline.errors import CaseError
 from pipeline.geometry.box import Box
+from tests.surface.mats import CROSSING
 
 SIDE, THICKNESS = 20e-6, 10e-6
 SETTINGS = FlowSettings(face_velocity=0.025)
@@ -151,3 +152,12 @@ def test_the_tables_tell_each_model_and_each_part() -> None:
     assert {row[1:] for row in means.rows[:3]} == {
         ("1.4 um", f"{compare(EQUAL, 0.09, 0.089, FLOW).models['davies'].mesh:.4g}")
     }
+
+
+def test_a_model_beyond_its_pole_is_left_out_and_the_others_stay() -> None:
+    # Jackson and James have no answer above a solidity of exp(-0.931) = 0.394
+    dense = compare(CROSSING, 0.45, 0.45, FlowSettings().flow())
+    assert "jackson_james" not in dense.models
+    assert {"davies", "kuwabara", "happel"} <= dense.models.keys()
+    for row in dense.models.values():
+        assert math.isfinite(row.mesh)
