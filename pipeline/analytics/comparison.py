@@ -35,7 +35,8 @@ def compare(mat: Mat, surface_solidity: float, mesh_solidity: float, flow: Flow)
     -------
     Comparison
         Models without an answer at one of the solidities are left out. In each row, nominal + overlap + meshing =
-        mesh. ``attribution`` tells the same of `REFERENCE` in relative terms, beside the spread of all models that are within their solidity range.
+        mesh. ``attribution`` tells the same of `REFERENCE` in relative terms, beside the spread of all models that
+        are within their solidity range.
     """
     solidity = {"nominal": nominal_solidity(mat), "surface": surface_solidity, "mesh": mesh_solidity}
     diameters = mat_diameters(mat, flow, mesh_solidity)
