@@ -1,24 +1,30 @@
-"""Measure what docs/verification.md shows: ``python docs/verify.py runs/verification [PART ...]``, or ``make verify``.
+"""Measure what docs/verification.md shows, and write its tables and plots: ``make verify``.
 
-Parts: square, hexagonal, slip, mats, and tables, which draws and writes from what the others left. Finished runs are reused.
+``python docs/verify.py RUNS [PART ...]`` runs some parts only: square, hexagonal, slip, mats, filters, and page, which
+writes tables and plots from what the others left in docs/verification. Finished runs are reused.
 """
 
 import sys
 from pathlib import Path
 
+from pipeline.analytics.plots import save_figure
 from pipeline.case import read_case
-from pipeline.verify.ladder import SLIP, ladder
-from pipeline.verify.records import write_records
+from pipeline.pictures import write_png
+from pipeline.pictures.flow import read_flow, slice_figure, streamline_figure
+from pipeline.run import Run, run
+from pipeline.verify import filters, tables
+from pipeline.verify.ladder import SLIP, Rung, ladder
+from pipeline.verify.mats import MatRun, mat_runs
+from pipeline.verify.plots import ladder_figure, mats_figure
+from pipeline.verify.records import read_records, write_records
 
 DOCS = Path(__file__).parent
-CASES = DOCS.parent / "cases" / "verification"
-RECORDS = DOCS / "verification"
-
-
-def arrays(arrangement: str, runs: Path) -> None:
-    """Climb the ladder of one arrangement."""
-    rungs = ladder(read_case(CASES / f"{arrangement}.toml"), runs / arrangement, tell=told)
-    write_records(RECORDS / f"{arrangement}.csv", rungs)
+PAGE, RECORDS, GALLERY = DOCS / "verification.md", DOCS / "verification", DOCS / "gallery"
+CASES = DOCS.parent / "cases"
+ARRAYS = ("square", "hexagonal")
+SLIP_SOLIDITIES = (0.1,)
+FILTERS = ("default", "figure10_corner")
+PARTS = (*ARRAYS, "slip", "mats", "filters", "page")
 
 
 def told(what: str, done: float | None = None) -> None:
@@ -27,6 +33,59 @@ def told(what: str, done: float | None = None) -> None:
         sys.stderr.write(f"{what}\n")
 
 
+def measure(part: str, runs: Path) -> None:
+    """Run a part's cases and keep their figures."""
+    if part == "slip":
+        case = read_case(CASES / "verification" / "square.toml")
+        write_records(RECORDS / "slip.csv", ladder(case, runs / "square", SLIP_SOLIDITIES, SLIP, told))
+    elif part == "mats":
+        write_records(
+            RECORDS / "mats.csv", mat_runs(read_case(CASES / "verification" / "mat.toml"), runs / "mats", told)
+        )
+    elif part == "filters":
+        for name in FILTERS:
+            solve_filter(name, runs / name)
+    else:
+        case = read_case(CASES / "verification" / f"{part}.toml")
+        write_records(RECORDS / f"{part}.csv", ladder(case, runs / part, tell=told))
+
+
+def solve_filter(name: str, folder: Path) -> None:
+    """Solve a bundled case, keep its pressure drops, and draw the flow."""
+    case = read_case(CASES / f"{name}.toml")
+    run(case, folder, "solve", tell=told, without=frozenset({"report"}))
+    this = Run(case, folder)
+    write_records(RECORDS / f"{name}.csv", filters.pressure_drops(this))
+    flow = read_flow(folder / "solve" / "openfoam", case.flow.flow().density)
+    title = f"cases/{name}.toml, {this.solution.pressure_drop:.3g} Pa"
+    write_png(slice_figure(flow, title), GALLERY / f"flow_{name}_slice.png")
+    write_png(streamline_figure(flow, title), GALLERY / f"flow_{name}_streamlines.png")
+
+
+def write_page() -> None:
+    """Fill the page's tables and draw its plots."""
+    arrays = [rung for name in ARRAYS for rung in read_records(RECORDS / f"{name}.csv", Rung)]
+    slip = read_records(RECORDS / "slip.csv", Rung)
+    mats = read_records(RECORDS / "mats.csv", MatRun)
+    # the first mat is that of the case's own box, and on the coarsest mesh; the sizes came last, on the case's own
+    resolution = [each for each in mats if each.side == mats[0].side]
+    sizes = [each for each in mats if each.edge == mats[-1].edge]
+    page = PAGE.read_text(encoding="utf-8")
+    page = tables.filled(page, "ladder", tables.ladder_table(arrays))
+    page = tables.filled(page, "slip", tables.ladder_table(slip))
+    page = tables.filled(page, "balances", tables.balance_table([("arrays", arrays), ("slip", slip), ("mats", mats)]))
+    page = tables.filled(page, "resolution", tables.resolution_table(resolution))
+    page = tables.filled(page, "size", tables.size_table(sizes))
+    drops = {name: read_records(RECORDS / f"{name}.csv", filters.Drop) for name in FILTERS}
+    page = tables.filled(page, "filters", filters.drops_table(drops))
+    PAGE.write_text(page, encoding="utf-8")
+    save_figure(ladder_figure([*arrays, *slip]), GALLERY / "verification_arrays.svg")
+    save_figure(mats_figure(resolution, sizes), GALLERY / "verification_mats.svg")
+
+
 if __name__ == "__main__":
-    for part in sys.argv[2:]:
-        arrays(part, Path(sys.argv[1]))
+    for part in sys.argv[2:] or PARTS:
+        if part == "page":
+            write_page()
+        else:
+            measure(part, Path(sys.argv[1]))

@@ -20,6 +20,7 @@ FACTORS = (1.5, 1.0, 1 / 1.5)
 SLIP = 0.1
 """Slip length over fiber radius of the rungs with slip."""
 
+_WIDE_GAP = 1.2  # diameters between neighboring fibers, from which on the fibers set the scale of the flow
 _EXACT = {"square": square_drag, "hexagonal": hexagonal_drag}
 
 
@@ -72,9 +73,11 @@ class Rung:
 
 
 def rung_case(case: Case, solidity: float, factor: float, slip: float = 0.0) -> Case:
-    """Give a case another solidity, and a mesh with all its lengths scaled: edges, growth, envelope, polygons, rings.
+    """Give a case another solidity, and scale its mesh as a whole: edges, growth, envelope, polygons, rings, depth.
 
-    The plenums become one pitch long. Slip comes from the mean free path, as it does in any case.
+    The lengths are the case's times the factor, and less where the gaps between the fibers are narrower than 1.2
+    diameters: then in the gaps' proportion. The plenums become one pitch long. Slip comes from the mean free path, as
+    it does in any case.
 
     Raises
     ------
@@ -84,8 +87,12 @@ def rung_case(case: Case, solidity: float, factor: float, slip: float = 0.0) -> 
     mat = case.mat
     if not isinstance(mat, ArraySettings) or mat.rows < 3 or mat.rows % 2 == 0:
         raise CaseError("the ladder needs an array with a middle row: mat.generator = array, rows = 3, 5, ...")
+    mesh, depth = case.tetmesh, mat.depth or mat.pitch
     mat = ArraySettings.model_validate({**mat.model_dump(), "solidity": solidity})
-    mesh = case.tetmesh
+    gap = mat.pitch / mat.fiber_diameter - 1.0
+    factor *= min(1.0, gap / _WIDE_GAP)
+    # the flow is the same at every depth; a slab that stays as deep as its cells are large keeps the meshes alike
+    mat = mat.model_copy(update={"depth": depth * factor})
     changes: dict[str, object] = {
         "mat": mat,
         # a multiple of four, so that the polygon of a fiber on a symmetry plane is cut in two halves
