@@ -139,7 +139,7 @@ def streamline_figure(
     low, high = np.array(flow.air.bounds[::2]), np.array(flow.air.bounds[1::2])
     middle, reach = 0.5 * (low + high), float(np.linalg.norm(high - low))
     plotter.camera_position = [tuple(middle + reach * np.array([0.9, -1.75, 0.55])), tuple(middle), (0.0, 0.0, 1.0)]
-    plotter.camera.zoom(1.15)
+    plotter.camera.zoom(1.02)
     image = Image(_shot(plotter), (0.0, float(size[0]), 0.0, float(size[1])))
     figure = Figure(figsize=(size[0] / _DPI + 1.0, size[1] / _DPI + 0.4), layout="constrained")
     axes = figure.subplots()
@@ -168,4 +168,4 @@ def _streamlines(flow: FlowField, lines: int) -> "pv.PolyData":
         # against a face velocity of centimeters a second; the lines end where they run into a fiber
         terminal_speed=1e-7,
     )
-    return found.tube(radius=0.004 * float(np.linalg.norm([x1 - x0, y1 - y0, z1 - z0])), n_sides=8)
+    return found.tube(radius=0.0028 * float(np.linalg.norm([x1 - x0, y1 - y0, z1 - z0])), n_sides=8)
