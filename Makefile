@@ -6,7 +6,7 @@ BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
 .DEFAULT_GOAL := help
-.PHONY: help setup case test test-slow check bench docs clean
+.PHONY: help setup case test test-slow check bench verify docs clean
 
 help:  ## Say what there is
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-10s %s\n", $$1, $$2}'
@@ -40,6 +40,9 @@ check: setup  ## Style, types, imports, and the examples in the documentation
 
 bench: setup  ## Measure what the documentation quotes
 	$(BIN)/pytest benchmarks --benchmark-only --benchmark-group-by=func
+
+verify: setup  ## Solve arrays and mats, and write what docs/verification.md shows (half an hour; needs OpenFOAM)
+	$(BIN)/python docs/verify.py runs/verification
 
 docs: setup  ## Build the site of docs/ into build/site
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[docs]'
