@@ -4,7 +4,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pipeline.verify.convergence import FORMAL_ORDER
 from pipeline.verify.exact import hexagonal_drag, square_drag
 from pipeline.verify.ladder import FACTORS, Rung
 from pipeline.verify.mats import MatRun, mean_and_half_width, over_finest, spread
@@ -22,7 +21,7 @@ def ladder_figure(rungs: list[Rung]) -> "Figure":
     """Plot F* over solidity against the exact curves, and the errors over the mesh spacing."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(10.0, 4.2), layout="constrained")
+    figure = Figure(figsize=(11.0, 4.2), layout="constrained")
     left, right = figure.subplots(1, 2)
     _draw_drag(left, rungs)
     _draw_errors(right, rungs)
@@ -70,8 +69,8 @@ def _draw_errors(axes: "Axes", rungs: list[Rung]) -> None:
     axes.set_xlabel("(air volume / cells)^(1/3) [fiber diameters]")
     axes.set_ylabel("error of F* [%]")
     axes.grid(alpha=0.3)
-    axes.legend(fontsize="x-small", ncols=2)
-    axes.set_title(f"gray: 1 %; formal order {FORMAL_ORDER:g}", fontsize="small", loc="left")
+    axes.legend(fontsize="x-small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    axes.set_title("gray: within 1 %", fontsize="small", loc="left")
 
 
 def mats_figure(resolution: list[MatRun], sizes: list[MatRun]) -> "Figure":

@@ -49,7 +49,7 @@ def ladder_table(rungs: list[Rung]) -> str:
                 *(f"{rung.f_star:.3f} ({_percent(rung.error)})" for rung in climbed),
                 _order(found),
                 f"{found.extrapolated:.3f} ({_percent(found.extrapolated / fine.exact - 1.0)})",
-                f"{found.index:.1%}",
+                f"{100.0 * found.index:.1f} %",
                 f"{fine.cells:,}",
             ]
         )
