@@ -178,7 +178,7 @@ def _shortened(line: str) -> str:
 
 
 def _line(error: Any, content: dict[str, Any]) -> str:
-    keys = [str(key) for key in error["loc"] if _is_key(str(key), error["loc"], content)]
+    keys = [str(key) for key in error["loc"]]
     place = ".".join(keys) or "the case"
     message = str(error["msg"]).removeprefix("Value error, ")
     value = error.get("input")
@@ -194,14 +194,6 @@ def _line(error: Any, content: dict[str, Any]) -> str:
         case "value_error" | "assertion_error":
             return f"{place}: {message}"
     return f"{place} = {value!r}: {message[:1].lower()}{message[1:]}"
-
-
-def _is_key(key: str, loc: tuple[object, ...], content: dict[str, Any]) -> bool:
-    # pydantic puts the tag of a union's branch into the path; people know only the keys of their file
-    return key not in _TAGS
-
-
-_TAGS = {"layered", "box", "array", "file", "constant", "normal", "lognormal", "uniform", "mixture", "float"}
 
 
 def _kind_of(tables: list[str], content: dict[str, Any]) -> str:

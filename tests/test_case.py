@@ -66,6 +66,11 @@ def test_a_mistake_is_told_with_its_place_and_what_would_do(mistake: str, place:
     assert advice in message
 
 
+def test_a_missing_file_of_fibers_is_told_by_its_key() -> None:
+    with pytest.raises(CaseError, match=r"mat\.file: missing"):
+        validate({"mat": {"generator": "file"}}, "case.toml")
+
+
 def test_all_mistakes_are_told_at_once() -> None:
     message = changed("mat.side=20", "tetmesh.passes=0", "flow.temperature='warm'", "surface.joint='glued'")
     assert message.startswith("case.toml has 4 mistakes:")
