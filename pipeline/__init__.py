@@ -31,13 +31,14 @@ if TYPE_CHECKING:
     from pipeline.run import Run as Run
     from pipeline.run import run as run
     from pipeline.surface.union import unite as unite
-    from pipeline.tetmesh.mesh import tetrahedralize as tetrahedralize
+    from pipeline.tetmesh.fill import fill as fill
 
 _HOMES = {
     "Case": "pipeline.case",
     "Run": "pipeline.run",
     "compare": "pipeline.analytics",
     "enclose": "pipeline.enclosure.duct",
+    "fill": "pipeline.tetmesh.fill",
     "generate": "pipeline.mat",
     "judge": "pipeline.quality",
     "measure": "pipeline.mat",
@@ -45,11 +46,10 @@ _HOMES = {
     "read_case": "pipeline.case",
     "read_mesh": "pipeline.export",
     "run": "pipeline.run",
-    "tetrahedralize": "pipeline.tetmesh.mesh",
     "unite": "pipeline.surface.union",
 }
-__all__ = ["Case", "Run", "compare", "enclose", "generate", "judge", "measure", "predict", "read_case"]
-__all__ += ["read_mesh", "run", "tetrahedralize", "unite"]
+__all__ = ["Case", "Run", "compare", "enclose", "fill", "generate", "judge", "measure", "predict", "read_case"]
+__all__ += ["read_mesh", "run", "unite"]
 
 
 class _Package(ModuleType):

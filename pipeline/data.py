@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from pipeline.geometry.box import Box
 from pipeline.geometry.faces import compacted, patch_of_faces, tet_faces, tets_of_faces
-from pipeline.geometry.polyhedra import Polyhedra, polyhedra
+from pipeline.geometry.polyhedra import Polyhedra, fanned, polyhedra
 from pipeline.geometry.tets import volumes
 from pipeline.geometry.triangles import enclosed_volume, unmatched_edges
 
@@ -395,6 +395,27 @@ class FaceMesh:
     def internal(self) -> int:
         """Number of faces between two cells."""
         return len(self.neighbour)
+
+    @property
+    def tetrahedral(self) -> bool:
+        """Whether every face is a triangle and every cell has four of them."""
+        if len(self.corners) != 3 * self.faces:
+            return False
+        faces_of = np.bincount(self.owner, minlength=self.cells) + np.bincount(self.neighbour, minlength=self.cells)
+        return bool((faces_of == 4).all())
+
+    @property
+    def volume(self) -> float:
+        """Volume of all cells [m3]."""
+        return enclosed_volume(*self.boundary())
+
+    def patch(self, name: str) -> slice:
+        """Where the faces of a patch stand; KeyError if there is no such patch."""
+        return {patch.name: slice(patch.start, patch.start + patch.count) for patch in self.patches}[name]
+
+    def boundary(self) -> tuple[Floats, Ints]:
+        """Give the boundary as a closed surface of triangles, outward: points (k, 3) [m] and triangles (t, 3)."""
+        return fanned(self.points, self.corners, self.offsets[self.internal :])
 
     def triangles(self) -> Ints:
         """All faces as a (faces, 3) int array; ValueError if one has more than three corners."""

@@ -15,7 +15,7 @@ from pipeline.analytics.growth import Predictor
 from pipeline.analytics.pressure_models import pressure_model
 from pipeline.analytics.slip import SLIP_COEFFICIENT, knudsen, slip_length
 from pipeline.case import Case
-from pipeline.data import Comparison, FluidDomain, Mat, QualityReport, Solution, Surface, TetMesh
+from pipeline.data import Comparison, FaceMesh, FluidDomain, Mat, QualityReport, Solution, Surface
 from pipeline.enclosure.duct import enclose
 from pipeline.errors import StageError
 from pipeline.export import FiberSlip, export, fiber_radius
@@ -31,7 +31,8 @@ from pipeline.solve import Bed, openfoam_missing, solve
 from pipeline.surface.files import write_surface
 from pipeline.surface.measures import measure_surface
 from pipeline.surface.union import unite
-from pipeline.tetmesh.mesh import TetmeshMeasures, tetrahedralize
+from pipeline.tetmesh.fill import fill
+from pipeline.tetmesh.mesh import TetmeshMeasures
 
 SOLVING = ".solving"
 """Folder of a run that holds a solver's run until it has settled."""
@@ -108,9 +109,9 @@ class Run:
         return store.load(FluidDomain, self.folder / "enclosure" / "domain.npz")
 
     @property
-    def mesh(self) -> TetMesh:
-        """The air in tetrahedra."""
-        return store.load(TetMesh, self.folder / "tetmesh" / "mesh.npz")
+    def mesh(self) -> FaceMesh:
+        """The air in cells."""
+        return store.load(FaceMesh, self.folder / "tetmesh" / "mesh.npz")
 
     @property
     def quality(self) -> QualityReport:
@@ -179,20 +180,20 @@ def _make_enclosure(run: Run, into: Path, tell: Progress) -> Counts:
 
 
 def _make_tetmesh(run: Run, into: Path, tell: Progress) -> Counts:
-    mesh, measures = tetrahedralize(run.domain, run.case.tetmesh, tell)
+    mesh, measures = fill(run.domain, run.case.tetmesh, tell)
     store.save(mesh, into / "mesh.npz")
     store.write_json(into / "measures.json", measures)
     return {"cells": measures.cells, "volume_error": measures.volume_error}
 
 
 def _make_quality(run: Run, into: Path, tell: Progress) -> Counts:
-    report = judge(run.mesh.face_mesh(), run.case.quality, tell)
+    report = judge(run.mesh, run.case.quality, tell)
     store.write_json(into / "quality.json", report)
     return {"verdict": report.verdict, "max_non_orthogonality": report.metrics["non_orthogonality"].max}
 
 
 def _make_export(run: Run, into: Path, tell: Progress) -> Counts:
-    mesh, case = run.mesh.face_mesh(), run.case
+    mesh, case = run.mesh, run.case
     fields = cell_fields(mesh) if "vtk" in case.export.formats else {}
     flow = case.flow.flow()
     slip = None
@@ -203,9 +204,9 @@ def _make_export(run: Run, into: Path, tell: Progress) -> Counts:
 
 
 def _make_compare(run: Run, into: Path, tell: Progress) -> Counts:
-    mesh = run.mesh
-    air = volume_between(mesh.points, mesh.tets, mesh.slab.lower[2], mesh.slab.upper[2])
-    comparison = compare(run.mat, run.surface.solidity, 1.0 - air / mesh.slab.volume, run.case.flow.flow())
+    mat = run.mat
+    air = volume_between(*run.mesh.boundary(), mat.slab.lower[2], mat.slab.upper[2])
+    comparison = compare(mat, run.surface.solidity, 1.0 - air / mat.slab.volume, run.case.flow.flow())
     store.write_json(into / "comparison.json", comparison)
     return {"mesh_solidity": comparison.solidity["mesh"]}
 

@@ -13,6 +13,7 @@ import importlib.metadata
 import json
 import os
 import shutil
+import typing
 import zipfile
 from collections.abc import Iterable, Iterator
 from functools import cache
@@ -108,7 +109,7 @@ def save(thing: object, path: Path) -> None:
             arrays[item.name] = value
         else:
             rest[item.name] = {"lower": value.lower, "upper": value.upper} if isinstance(value, Box) else value
-    np.savez(path, **arrays, rest=np.array(json.dumps(rest, sort_keys=True)))
+    np.savez(path, **arrays, rest=np.array(json.dumps(rest, sort_keys=True, default=_plain)))
 
 
 def load(kind: type[T], path: Path) -> T:
@@ -131,7 +132,8 @@ def load(kind: type[T], path: Path) -> T:
             corners = values[item.name]
             values[item.name] = Box(tuple(corners["lower"]), tuple(corners["upper"]))
         elif isinstance(values.get(item.name), list):
-            values[item.name] = tuple(values[item.name])
+            entry = typing.get_args(item.type)[0]
+            values[item.name] = tuple(entry(**each) if isinstance(each, dict) else each for each in values[item.name])
     return kind(**values)
 
 

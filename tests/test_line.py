@@ -17,7 +17,6 @@ from pipeline import store
 from pipeline.case import Case, read_case
 from pipeline.data import FIBERS, PATCHES, FaceMesh
 from pipeline.geometry.tets import volumes
-from pipeline.geometry.triangles import area_vectors
 from pipeline.run import Run, run
 from tests.openfoam import figures, foam, patches
 
@@ -71,16 +70,17 @@ def test_volume_is_kept_from_the_surface_to_the_mesh(smoke: Run) -> None:
 
 def test_the_mesh_fills_the_duct_and_its_planes_are_flat(smoke: Run) -> None:
     mesh, box = smoke.mesh, smoke.domain.box
-    assert mesh.patches == PATCHES
-    assert (volumes(mesh.points, mesh.tets) > 0).all()
-    vectors = area_vectors(mesh.points, mesh.faces)
+    assert tuple(patch.name for patch in mesh.patches) == PATCHES
+    shape = mesh.polyhedra()
+    assert (shape.volumes > 0).all()
+    vectors = shape.areas[mesh.internal :]
     np.testing.assert_allclose(vectors.sum(axis=0), 0, atol=1e-12 * np.abs(vectors).sum())
     walls = {"inlet": (2, 0), "outlet": (2, 1), "xmin": (0, 0), "xmax": (0, 1), "ymin": (1, 0), "ymax": (1, 1)}
     for name, (axis, end) in walls.items():
         plane = (box.lower, box.upper)[end][axis]
-        corners = mesh.points[mesh.faces[mesh.patch == mesh.patches.index(name)]]
+        corners = mesh.points[mesh.triangles()[mesh.patch(name)]]
         assert (corners[..., axis] == plane).all()  # to the bit: OpenFOAM's symmetry plane asks for 3e-8 rad
-    inlet = np.linalg.norm(vectors[mesh.patch == 0], axis=1).sum()
+    inlet = np.linalg.norm(shape.areas[mesh.patch("inlet")], axis=1).sum()
     assert inlet == pytest.approx(box.face_area, rel=1e-12)
 
 
@@ -92,7 +92,7 @@ def test_the_fibers_patch_lies_on_the_fibers(smoke: Run) -> None:
     triangles = domain.triangles[domain.patch == PATCHES.index(FIBERS)]
     weights = np.random.default_rng(0).dirichlet(np.ones(3), (len(triangles), 60))
     cloud = np.einsum("tsk,tkx->tsx", weights, domain.points[triangles]).reshape(-1, 3)
-    on_wall = np.unique(mesh.faces[mesh.patch == mesh.patches.index(FIBERS)])
+    on_wall = np.unique(mesh.triangles()[mesh.patch(FIBERS)])
     distance, _ = cKDTree(cloud).query(mesh.points[on_wall])
     # the envelope, the mender's leash and the fitting, and the gaps of the sampled cloud
     assert np.percentile(distance, 99) < (smoke.case.tetmesh.envelope + 0.06) * unit
@@ -239,10 +239,15 @@ def test_a_folder_that_cannot_be_written_is_a_clear_error(tmp_path: Path) -> Non
 
 
 def test_mesh_and_faces_are_the_same_mesh(smoke: Run) -> None:
-    mesh: FaceMesh = smoke.mesh.face_mesh()
-    assert mesh.cells == len(smoke.mesh.tets)
-    assert mesh.faces == 2 * mesh.cells + len(smoke.mesh.faces) // 2
-    assert math.isclose(float(mesh.polyhedra().volumes.sum()), smoke.mesh.volume, rel_tol=1e-12)
+    mesh: FaceMesh = smoke.mesh
+    tets = mesh.tets()
+    assert mesh.cells == len(tets)
+    boundary = mesh.faces - mesh.internal
+    assert mesh.faces == 2 * mesh.cells + boundary // 2
+    cells = volumes(mesh.points, tets)
+    assert (cells > 0).all()
+    assert math.isclose(float(cells.sum()), mesh.volume, rel_tol=1e-12)
+    assert math.isclose(float(mesh.polyhedra().volumes.sum()), mesh.volume, rel_tol=1e-12)
 
 
 def test_doctor_and_schema_answer() -> None:

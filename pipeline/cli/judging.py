@@ -39,7 +39,7 @@ def _mesh(path: Path) -> tuple[FaceMesh, QualitySettings | None]:
     # a run of ours keeps its mesh, and its case has limits of its own
     if (path / CASE).is_file():
         run = Run.opened(path)
-        return run.mesh.face_mesh(), run.case.quality
+        return run.mesh, run.case.quality
     return read_mesh(path), None
 
 

@@ -74,6 +74,45 @@ def polygons(points: Floats, corners: Ints, offsets: Ints) -> tuple[Floats, Floa
     return areas, centers
 
 
+def fanned(points: Floats, corners: Ints, offsets: Ints) -> tuple[Floats, Ints]:
+    """Cut polygons into triangles, as OpenFOAM does: a fan about the mean of the corners, a triangle as it is.
+
+    Parameters
+    ----------
+    points : (n, 3) array [m]
+    corners, offsets : int arrays
+        As in `by_size`; `offsets` may begin anywhere in `corners`.
+
+    Returns
+    -------
+    points : (k, 3) array [m]
+        The corners' points, then the middles of the polygons.
+    triangles : (t, 3) int array
+        Each goes round as its polygon does.
+
+    Examples
+    --------
+    >>> square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
+    >>> points, triangles = fanned(square, np.arange(4), np.array([0, 4]))
+    >>> points[-1].tolist(), triangles.tolist()
+    ([0.5, 0.5, 0.0], [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
+    """
+    used, local = np.unique(corners[offsets[0] : offsets[-1]], return_inverse=True)
+    vertices = [points[used]]
+    triangles = [np.empty((0, 3), np.int64)]
+    count = len(used)
+    for faces, places in by_size(offsets - offsets[0]):
+        around = local[places]
+        if places.shape[1] == 3:
+            triangles.append(around)
+            continue
+        middle = np.broadcast_to((count + np.arange(len(faces)))[:, None], around.shape)
+        triangles.append(np.stack([around, np.roll(around, -1, axis=1), middle], axis=2).reshape(-1, 3))
+        vertices.append(vertices[0][around].mean(axis=1))
+        count += len(faces)
+    return np.concatenate(vertices), np.concatenate(triangles)
+
+
 def sum_per_cell(cell: Ints, values: Floats, cells: int) -> Floats:
     """Sum rows of `values` by the cell that each belongs to.
 

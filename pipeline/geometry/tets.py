@@ -63,14 +63,14 @@ def boundary(tets: Ints) -> tuple[Ints, Ints]:
     return faces[single], single // 4
 
 
-def volume_between(points: Floats, tets: Ints, low: float, high: float) -> float:
-    """Volume of the tetrahedra between two planes across z, cut exactly.
+def volume_between(points: Floats, triangles: Ints, low: float, high: float) -> float:
+    """Volume that a closed surface encloses between two planes across z, cut exactly.
 
     Parameters
     ----------
     points : (n, 3) array [m]
-    tets : (m, 4) int array
-        Positive tetrahedra.
+    triangles : (m, 3) int array
+        Outward; the surface may have holes through it and voids in it.
     low, high : float [m]
         The planes' z.
 
@@ -78,15 +78,24 @@ def volume_between(points: Floats, tets: Ints, low: float, high: float) -> float
     -------
     float [m3]
 
+    Notes
+    -----
+    Each triangle and one fixed point span a tetrahedron whose volume counts with its sign: what lies outside the
+    surface cancels, and so it does in what the planes leave of each.
+
     Examples
     --------
     >>> corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
-    >>> round(6 * volume_between(corners, np.array([[0, 1, 2, 3]]), 0.5, 2.0), 12)  # a corner of half the size
+    >>> round(6 * volume_between(corners, FACES, 0.5, 2.0), 12)  # a corner of half the size
     0.125
     """
-    heights = np.sort(points[tets, 2], axis=1)
+    middle = points.mean(axis=0)
+    # the point lies on the inner side of an outward triangle, against the order of a positive tetrahedron
+    spanned = np.column_stack([triangles[:, ::-1], np.full(len(triangles), len(points))])
+    vertices = np.concatenate([points, middle[None]])
+    heights = np.sort(vertices[spanned, 2], axis=1)
     share = _share_below(heights, high) - _share_below(heights, low)
-    return float(volumes(points, tets) @ share)
+    return float(volumes(vertices, spanned) @ share)
 
 
 def _share_below(heights: Floats, level: float) -> Floats:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.case import Case
-from pipeline.data import Comparison, FluidDomain, Mat, QualityReport, Solution, Surface, TetMesh
+from pipeline.data import Comparison, FaceMesh, FluidDomain, Mat, QualityReport, Solution, Surface
 from pipeline.mat import MatMeasures
 from pipeline.tetmesh.mesh import TetmeshMeasures
 
@@ -33,7 +33,7 @@ class ReportContent:
     mat_measures: MatMeasures | None = None
     surface: Surface | None = None
     domain: FluidDomain | None = None
-    mesh: TetMesh | None = None
+    mesh: FaceMesh | None = None
     mesh_measures: TetmeshMeasures | None = None
     quality: QualityReport | None = None
     comparison: Comparison | None = None

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pipeline import store
-from pipeline.data import FluidDomain, Mat, Surface, TetMesh
+from pipeline.data import FaceMesh, FluidDomain, Mat, Surface
 from pipeline.report.scenes import BACKGROUND, SCENES, Subject
 
 if TYPE_CHECKING:
     from PIL import Image
 
-NOUNS = {"mat": Mat, "surface": Surface, "domain": FluidDomain, "mesh": TetMesh}
+NOUNS = {"mat": Mat, "surface": Surface, "domain": FluidDomain, "mesh": FaceMesh}
 """Parts of a subject that are handed over as files."""
 WORST, ORDER = "worst.npy", "order.json"
 _FRAME = 16  # pixels of background kept around a picture

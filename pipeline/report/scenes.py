@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from pipeline.data import FIBERS, Floats, FluidDomain, Ints, Mat, Surface, TetMesh
+from pipeline.data import FIBERS, FaceMesh, Floats, FluidDomain, Ints, Mat, Surface
+from pipeline.export.vtk import patch_surface, volume_grid
 from pipeline.geometry.box import Box
+from pipeline.geometry.polyhedra import polygons
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -39,7 +41,7 @@ class Subject:
     mat: Mat
     surface: Surface | None = None
     domain: FluidDomain | None = None
-    mesh: TetMesh | None = None
+    mesh: FaceMesh | None = None
     worst: Floats | None = None
 
 
@@ -57,7 +59,7 @@ def fiber_colors(fiber: Ints) -> npt.NDArray[np.uint8]:
     return _PALETTE[fiber % len(_PALETTE)]
 
 
-def fibers_of_faces(mesh: TetMesh, domain: FluidDomain) -> Ints:
+def fibers_of_faces(mesh: FaceMesh, domain: FluidDomain) -> Ints:
     """Fiber of each face of the mesh's patch of fibers: that of the nearest triangle of the duct's surface.
 
     Returns
@@ -68,10 +70,15 @@ def fibers_of_faces(mesh: TetMesh, domain: FluidDomain) -> Ints:
 
     wall = domain.patch == domain.patches.index(FIBERS)
     centers = domain.points[domain.triangles[wall]].mean(axis=1)
-    faces = mesh.faces[mesh.patch == mesh.patches.index(FIBERS)]
-    nearest = cKDTree(centers).query(mesh.points[faces].mean(axis=1))[1]
+    nearest = cKDTree(centers).query(_fiber_faces(mesh))[1]
     fibers: Ints = domain.fiber[wall][nearest]
     return fibers
+
+
+def _fiber_faces(mesh: FaceMesh) -> Floats:
+    """Center of each face on the fibers [m]."""
+    which = mesh.patch(FIBERS)
+    return polygons(mesh.points, mesh.corners, mesh.offsets[which.start : which.stop + 1])[1]
 
 
 def mat_from_above(plotter: "pv.Plotter", subject: Subject) -> None:
@@ -136,11 +143,11 @@ def cut_close_up(plotter: "pv.Plotter", subject: Subject) -> None:
     assert mesh is not None
     low, high = np.array(subject.mat.slab.lower), np.array(subject.mat.slab.upper)
     half = 0.5 * min(high[1] - low[1], high[2] - low[2])
-    # around the fiber that the plane meets nearest to the middle
-    walls = mesh.points[mesh.faces[mesh.patch == mesh.patches.index(FIBERS)]]
-    met = (walls[:, :, 0].min(axis=1) < _middle(mesh) / MICRO) & (walls[:, :, 0].max(axis=1) > _middle(mesh) / MICRO)
+    # around the fiber that the plane meets nearest to the middle: that of the walls within half a radius of it
+    walls = _fiber_faces(mesh) * MICRO
+    met = np.abs(walls[:, 0] - _middle(subject)) < 0.5 * MICRO * float(subject.mat.radius.min())
     middle = 0.5 * (low + high)
-    places = walls[met].mean(axis=1)
+    places = walls[met] / MICRO
     if len(places):
         middle = places[np.argmin(np.linalg.norm((places - middle)[:, 1:], axis=1))]
     plan = Box((low[0], middle[1] - half, middle[2] - half), (high[0], middle[1] + half, middle[2] + half))
@@ -149,13 +156,10 @@ def cut_close_up(plotter: "pv.Plotter", subject: Subject) -> None:
 
 def cells_behind_the_cut(plotter: "pv.Plotter", subject: Subject) -> None:
     """Draw the whole cells behind the middle plane x, and all fibers as the mesh has them."""
-    import pyvista as pv
-
     mesh = subject.mesh
     assert mesh is not None
-    points = mesh.points * MICRO
-    behind = points[mesh.tets][:, :, 0].mean(axis=1) > _middle(mesh)
-    grid = pv.UnstructuredGrid({pv.CellType.TETRA: mesh.tets[behind]}, points)
+    behind = MICRO * mesh.polyhedra().cell_centers[:, 0] > _middle(subject)
+    grid = volume_grid(mesh, behind, MICRO)
     plotter.add_mesh(
         grid.extract_surface(algorithm="dataset_surface"),
         color=_CELLS, ambient=0.35, diffuse=0.6, show_edges=True, edge_color=_EDGES, line_width=0.8,
@@ -230,19 +234,18 @@ def _tubes(mat: Mat) -> "pv.PolyData":
 
 
 def _mesh_fibers(subject: Subject, beyond: float | None = None) -> "pv.PolyData":
-    import pyvista as pv
-
     mesh, domain = subject.mesh, subject.domain
     assert mesh is not None
     assert domain is not None
-    skin = pv.PolyData.from_regular_faces(mesh.points * MICRO, mesh.faces[mesh.patch == mesh.patches.index(FIBERS)])
+    skin = patch_surface(mesh, FIBERS, MICRO)
     skin.cell_data["color"] = fiber_colors(fibers_of_faces(mesh, domain))
     return skin if beyond is None else skin.clip("x", origin=(beyond, 0, 0), invert=False)
 
 
-def _middle(mesh: TetMesh) -> float:
+def _middle(subject: Subject) -> float:
     # a plane that holds grid points would show cells' faces in place of their sections
-    return MICRO * (mesh.slab.lower[0] + 0.5003 * mesh.slab.size[0])
+    slab = subject.mat.slab
+    return MICRO * (slab.lower[0] + 0.5003 * slab.size[0])
 
 
 def _add_fibers(plotter: "pv.Plotter", skin: "pv.PolyData", edges: float = 0.0) -> None:
@@ -252,19 +255,29 @@ def _add_fibers(plotter: "pv.Plotter", skin: "pv.PolyData", edges: float = 0.0) 
     )  # fmt: skip
 
 
-def _add_slice(plotter: "pv.Plotter", subject: Subject, edges: float) -> TetMesh:
-    import pyvista as pv
-
+def _add_slice(plotter: "pv.Plotter", subject: Subject, edges: float) -> FaceMesh:
     mesh = subject.mesh
     assert mesh is not None
-    points, middle = mesh.points * MICRO, _middle(mesh)
-    heights = points[mesh.tets][:, :, 0]
-    crossing = (heights.min(axis=1) < middle) & (heights.max(axis=1) > middle)
-    grid = pv.UnstructuredGrid({pv.CellType.TETRA: mesh.tets[crossing]}, points)
-    sections = grid.slice("x", origin=(middle, 0, 0), generate_triangles=False)
+    middle = _middle(subject)
+    sections = volume_grid(mesh, _crossing(mesh, middle / MICRO), MICRO).slice(
+        "x", origin=(middle, 0, 0), generate_triangles=False
+    )
     plotter.add_mesh(sections, color=_CELLS, lighting=False, show_edges=True, edge_color=_EDGES, line_width=edges)
     _add_fibers(plotter, _mesh_fibers(subject, beyond=middle))
     return mesh
+
+
+def _crossing(mesh: FaceMesh, x: float) -> npt.NDArray[np.bool_]:
+    """Find the cells on both sides of a plane."""
+    beyond = mesh.points[mesh.corners, 0] > x
+    some, every = (each.reduceat(beyond, mesh.offsets[:-1]) for each in (np.logical_or, np.logical_and))
+    sides = []
+    for met in (some, ~every):
+        cells = np.zeros(mesh.cells, dtype=bool)
+        cells[mesh.owner[met]] = True
+        cells[mesh.neighbour[met[: mesh.internal]]] = True
+        sides.append(cells)
+    return np.asarray(sides[0] & sides[1])
 
 
 def _add_outline(plotter: "pv.Plotter", box: Box, width: float = 1.5) -> None:

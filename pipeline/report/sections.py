@@ -6,7 +6,6 @@ import platform
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-import numpy as np
 from pydantic import BaseModel
 
 from pipeline.analytics import comparison_tables, filter_of_mat, predict, prediction_tables
@@ -49,7 +48,7 @@ def tiles(content: ReportContent) -> list[tuple[str, str]]:
     elif content.mat_measures is not None:
         found.append(("nominal solidity", f"{content.mat_measures.solidity:.2%}"))
     if content.mesh is not None:
-        found.append(("cells", f"{len(content.mesh.tets):,}"))
+        found.append(("cells", f"{content.mesh.cells:,}"))
     if content.solution is not None:
         found.append(("pressure drop, CFD", f"{content.solution.pressure_drop:.3g} Pa"))
     if comparison is not None and "davies" in comparison.models:
@@ -108,9 +107,9 @@ def _mesh(content: ReportContent) -> dict[str, Any] | None:
     mesh = content.mesh
     if mesh is None:
         return None
-    counts = np.bincount(mesh.patch, minlength=len(mesh.patches))
-    patches = ", ".join(f"{name} {count:,}" for name, count in zip(mesh.patches, counts, strict=True))
-    facts = [("size", f"{len(mesh.tets):,} tetrahedra on {len(mesh.points):,} points"), ("boundary faces", patches)]
+    patches = ", ".join(f"{patch.name} {patch.count:,}" for patch in mesh.patches)
+    kind = "tetrahedra" if mesh.tetrahedral else "polyhedra"
+    facts = [("size", f"{mesh.cells:,} {kind} on {len(mesh.points):,} points"), ("boundary faces", patches)]
     made = content.mesh_measures
     if made is not None:
         facts += [
@@ -128,7 +127,7 @@ def _quality(content: ReportContent) -> dict[str, Any] | None:
     report = content.quality
     if report is None:
         return None
-    values: Mapping[str, Floats] = measure(content.mesh.face_mesh()) if content.mesh is not None else {}
+    values: Mapping[str, Floats] = measure(content.mesh) if content.mesh is not None else {}
     return {
         "summary": summary(report),
         "reasons": report.reasons,

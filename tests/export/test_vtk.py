@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pipeline.data import FaceMesh, Patch
-from pipeline.export.vtk import write_vtk
+from pipeline.export.vtk import volume_grid, write_vtk
 from tests.sample_meshes import duct
 
 
@@ -37,15 +37,28 @@ def test_patches_face_outward(tmp_path: Path) -> None:
     assert np.allclose(inlet["Normals"], [0, 0, -1])
 
 
-def test_cells_that_are_no_tetrahedra_are_refused(tmp_path: Path) -> None:
-    prism = FaceMesh(
-        np.array([[x, y, z] for z in (0.0, 2.0) for x, y in ((0, 0), (1, 0), (0, 1))]),
-        np.array([0, 2, 1, 3, 4, 5, 0, 1, 4, 3, 1, 2, 5, 4, 2, 0, 3, 5]),
-        np.array([0, 3, 6, 10, 14, 18]),
-        np.zeros(5, np.int64),
-        np.empty(0, np.int64),
-        1,
-        (Patch("all", 0, 5),),
+def test_other_cells_than_tetrahedra_are_polyhedra_of_the_same_volume(tmp_path: Path) -> None:
+    import pyvista as pv
+
+    # a prism of height 2 on half a unit square, and on its roof a pyramid of height 3, volume 1 and 1/2
+    prism_and_pyramid = FaceMesh(
+        np.array([*([x, y, z] for z in (0.0, 2.0) for x, y in ((0, 0), (1, 0), (0, 1))), [0.2, 0.3, 5.0]]),
+        np.array([3, 4, 5, 0, 2, 1, 0, 1, 4, 3, 1, 2, 5, 4, 2, 0, 3, 5, 3, 4, 6, 4, 5, 6, 5, 3, 6]),
+        np.array([0, 3, 6, 10, 14, 18, 21, 24, 27]),
+        np.array([0, 0, 0, 0, 0, 1, 1, 1]),
+        np.array([1]),
+        2,
+        (Patch("prism", 1, 4), Patch("roof", 5, 3)),
     )
-    with pytest.raises(ValueError, match="no triangle"):
-        write_vtk(prism, tmp_path, {})
+    assert not prism_and_pyramid.tetrahedral
+    assert prism_and_pyramid.volume == pytest.approx(1.5, rel=1e-14)
+    write_vtk(prism_and_pyramid, tmp_path, {})
+    blocks = pv.read(tmp_path / "mesh.vtm")
+    cells = blocks["internal"]
+    assert (cells.celltypes == pv.CellType.POLYHEDRON).all()
+    assert [cells.get_cell(k).n_faces for k in range(2)] == [5, 4]
+    assert cells.compute_cell_sizes()["Volume"] == pytest.approx([1.0, 0.5], rel=1e-6)
+    assert [blocks["boundary"]["prism"].get_cell(k).n_points for k in range(4)] == [3, 4, 4, 4]
+    roof = volume_grid(prism_and_pyramid, np.array([False, True]), scale=2.0)
+    assert roof.n_cells == 1
+    assert roof.get_cell(0).bounds[-1] == 10.0

@@ -34,7 +34,7 @@ def test_every_wall_of_the_mesh_gets_the_fiber_it_lies_on() -> None:
     mesh, domain = content.mesh, content.domain
     assert mesh is not None
     assert domain is not None
-    faces = mesh.faces[mesh.patch == mesh.patches.index(FIBERS)]
+    faces = mesh.triangles()[mesh.patch(FIBERS)]
     found = fibers_of_faces(mesh, domain)
     wall = domain.patch == domain.patches.index(FIBERS)
     centers: Floats = domain.points[domain.triangles[wall]].mean(axis=1)
