@@ -1,8 +1,6 @@
 """The line: one noun in, one noun out per stage, each result kept on disk and reused while it holds."""
 
 import math
-import resource
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
@@ -21,6 +19,7 @@ from pipeline.errors import StageError
 from pipeline.export import FiberSlip, export, fiber_radius
 from pipeline.export.openfoam.dictionaries import SOLVER
 from pipeline.geometry.tets import volume_between
+from pipeline.machine import peak_memory
 from pipeline.mat import ArraySettings, BoxSettings, FileSettings, LayeredSettings, MatMeasures, generate, measure
 from pipeline.mat.exchange import write_fibers
 from pipeline.mat.tally import report_stop
@@ -32,7 +31,7 @@ from pipeline.surface.files import write_surface
 from pipeline.surface.measures import measure_surface
 from pipeline.surface.union import unite
 from pipeline.tetmesh.fill import fill
-from pipeline.tetmesh.mesh import TetmeshMeasures
+from pipeline.tetmesh.finish import TetmeshMeasures
 
 SOLVING = ".solving"
 """Folder of a run that holds a solver's run until it has settled."""
@@ -409,15 +408,9 @@ def _step(stage: Stage, run: Run, again: bool, tell: Progress) -> Outcome:
     with store.side_folder(folder) as side:
         counts = stage.make(run, side, tell)
         seconds = time.perf_counter() - began
-        cost = {"seconds": seconds, "peak_memory": _peak_memory()}
+        cost = {"seconds": seconds, "peak_memory": peak_memory()}
         store.write_manifest(side, {"stage": stage.name, "key": key, **identity, **cost, "counts": counts})
     return Outcome(stage.name, folder, "made", seconds, counts)
-
-
-def _peak_memory() -> int:
-    """Most memory that this process has held so far [byte]."""
-    # Linux counts in KiB, macOS in bytes
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
 
 
 def _identity(stage: Stage, run: Run) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from typing import Any
 from pipeline.case import Case
 from pipeline.data import Comparison, FaceMesh, FluidDomain, Mat, QualityReport, Solution, Surface
 from pipeline.mat import MatMeasures
-from pipeline.tetmesh.mesh import TetmeshMeasures
+from pipeline.tetmesh.finish import TetmeshMeasures
 
 
 @dataclass(frozen=True, eq=False, slots=True)
