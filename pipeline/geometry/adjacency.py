@@ -1,7 +1,9 @@
-"""Which tetrahedra meet at a face, and which at a vertex."""
+"""Which tetrahedra meet at a face, and which at a vertex. Compiled by numba: imported only where a mesh is made."""
 
 import numpy as np
+import numpy.typing as npt
 
+from pipeline.geometry.compiled import compiled
 from pipeline.geometry.tets import FACES
 from pipeline.geometry.triangles import Ints
 
@@ -24,14 +26,77 @@ def neighbors(tets: Ints) -> Ints:
     >>> neighbors(np.array([[0, 1, 2, 3], [1, 2, 3, 4]])).tolist()
     [[-1, -1, -1, 1], [0, -1, -1, -1]]
     """
-    faces = np.sort(tets[:, FACES].reshape(-1, 3), axis=1)
-    order = np.lexsort(faces.T[::-1])
-    ranked = faces[order]
-    twin = np.flatnonzero((ranked[1:] == ranked[:-1]).all(axis=1))
-    across = np.full(len(faces), -1, dtype=np.int64)
-    across[order[twin]] = order[twin + 1] // 4
-    across[order[twin + 1]] = order[twin] // 4
-    return across.reshape(-1, 4)
+    found: Ints = _across(np.ascontiguousarray(tets), int(tets.max(initial=-1)) + 1)
+    return found
+
+
+@compiled
+def _across(tets: Ints, vertices: int) -> Ints:
+    """Match faces within the list of each vertex: that of a face's lowest corner has some ten faces."""
+    count = len(tets)
+    corners = np.empty((4 * count, 3), np.int64)
+    first = np.zeros(vertices + 1, np.int64)
+    for cell in range(count):
+        for side in range(4):
+            a, b, c = tets[cell, FACES[side, 0]], tets[cell, FACES[side, 1]], tets[cell, FACES[side, 2]]
+            low, high = min(a, b, c), max(a, b, c)
+            face = 4 * cell + side
+            corners[face, 0], corners[face, 1], corners[face, 2] = low, a + b + c - low - high, high
+            first[low + 1] += 1
+    for vertex in range(vertices):
+        first[vertex + 1] += first[vertex]
+    filled = first[:-1].copy()
+    faces = np.empty(4 * count, np.int64)
+    across = np.full((count, 4), -1, np.int64)
+    for face in range(4 * count):
+        low = corners[face, 0]
+        for place in range(first[low], filled[low]):
+            other = faces[place]
+            if corners[other, 1] == corners[face, 1] and corners[other, 2] == corners[face, 2]:
+                across[face // 4, face % 4] = other // 4
+                across[other // 4, other % 4] = face // 4
+                break
+        faces[filled[low]] = face
+        filled[low] += 1
+    return across
+
+
+def boundary_of(tets: Ints, across: Ints) -> tuple[Ints, Ints]:
+    """Give the faces without a neighbor, as `pipeline.geometry.tets.boundary` does.
+
+    Parameters
+    ----------
+    tets : (m, 4) int array
+    across : (m, 4) int array
+        As `neighbors` gives it.
+
+    Returns
+    -------
+    faces : (b, 3) int array
+        Counterclockwise seen from outside.
+    cell : (b,) int array
+    """
+    cell, side = np.nonzero(across < 0)
+    return np.take_along_axis(tets[cell], FACES[side], axis=1), cell
+
+
+def ring(tets: Ints, cells: npt.NDArray[np.bool_], vertices: int) -> npt.NDArray[np.bool_]:
+    """Add the cells that share a vertex with given ones.
+
+    Parameters
+    ----------
+    tets : (m, 4) int array
+    cells : (m,) bool array
+    vertices : int
+        Number of vertices.
+
+    Returns
+    -------
+    (m,) bool array
+    """
+    touched = np.zeros(vertices, dtype=bool)
+    touched[tets[cells]] = True
+    return np.asarray(touched[tets].any(axis=1))
 
 
 def cells_at_vertices(tets: Ints, vertices: int) -> tuple[Ints, Ints]:

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from pipeline.geometry.compiled import compiled
 from pipeline.geometry.triangles import Floats
 
 
-@njit(cache=True, inline="always")  # type: ignore[untyped-decorator]
+@compiled
 def _to_piece(
     x: float, y: float, z: float, start: Floats, end: Floats, radius: float, flat0: bool, flat1: bool
 ) -> float:
@@ -45,7 +45,7 @@ def _to_piece(
     return aside
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled
 def _lattice_distance(
     start: Floats,
     end: Floats,
@@ -84,7 +84,7 @@ def _lattice_distance(
 _Field = tuple[Floats, Floats, Floats, npt.NDArray[np.bool_], Floats, Floats, npt.NDArray[np.int32], float]
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled
 def _local(x: float, y: float, z: float, field: _Field) -> float:
     """Distance at any point, from the pieces that are nearest at the lattice points around it."""
     start, end, radius, flat, origin, step, nearest, reach = field
@@ -105,7 +105,7 @@ def _local(x: float, y: float, z: float, field: _Field) -> float:
     return best
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled
 def _distances(points: Floats, field: _Field) -> Floats:
     result = np.empty(len(points))
     for n in range(len(points)):
@@ -113,7 +113,7 @@ def _distances(points: Floats, field: _Field) -> Floats:
     return result
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled
 def _snapped(points: Floats, free: Floats, leash: float, field: _Field) -> tuple[Floats, npt.NDArray[np.bool_]]:
     result = points.copy()
     done = np.zeros(len(points), np.bool_)
@@ -142,7 +142,7 @@ def _snapped(points: Floats, free: Floats, leash: float, field: _Field) -> tuple
     return result, done
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled
 def _crossings(outside: Floats, inside: Floats, field: _Field) -> Floats:
     result = np.empty_like(outside)
     tiny = 1e-7 * field[5].min()
@@ -217,6 +217,11 @@ class FiberDistance:
         shape = (counts[0] + 1, counts[1] + 1, counts[2] + 1)
         distance, nearest = _lattice_distance(start, end, radius, flat, lower, step, shape, reach)
         return cls((start, end, radius, flat, lower, step, nearest, reach), distance)
+
+    def thicker(self, by: float) -> "FiberDistance":
+        """Give the distance to fibers of larger radius; `on_lattice` stays that of the old ones."""
+        start, end, radius, flat, lower, step, nearest, reach = self.field
+        return FiberDistance((start, end, radius + by, flat, lower, step, nearest, reach), self.on_lattice)
 
     def at(self, points: Floats) -> Floats:
         """Distance at each point, (n,) array."""

@@ -16,13 +16,14 @@ import numpy as np
 import numpy.typing as npt
 
 from pipeline.data import Floats, Ints
-from pipeline.geometry.tets import FACES, boundary
+from pipeline.geometry.cells import rows_of
+from pipeline.geometry.tets import FACES
 
 _EDGES = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
 _ROUNDS = 20  # neighboring corners take turns; on real mats three rounds were the most
 
 
-def split_corners(points: Floats, tets: Ints) -> tuple[Floats, Ints]:
+def split_corners(points: Floats, tets: Ints, seam: Ints | None = None) -> tuple[Floats, Ints]:
     """Split cells until none has more than one boundary face.
 
     Parameters
@@ -30,6 +31,8 @@ def split_corners(points: Floats, tets: Ints) -> tuple[Floats, Ints]:
     points : (n, 3) array
     tets : (m, 4) int array
         Positive tetrahedra.
+    seam : (k, 3) int array, optional
+        Faces behind which the mesh goes on, each with ascending corners: they are no boundary.
 
     Returns
     -------
@@ -38,17 +41,29 @@ def split_corners(points: Floats, tets: Ints) -> tuple[Floats, Ints]:
         Positive; they fill the same space.
     """
     for _ in range(_ROUNDS):
-        _, cell = boundary(tets)
+        faces, cell = true_boundary(tets, seam)
         on_boundary = np.bincount(cell, minlength=len(tets))
         three = np.flatnonzero(on_boundary >= 3)
         two = np.flatnonzero(on_boundary == 2)
         if len(three):
             points, tets = _with_centers(points, tets, three)
         elif len(two):
-            points, tets = _with_midpoints(points, tets, _opposite_edges(tets, two))
+            points, tets = _with_midpoints(points, tets, _opposite_edges(tets, faces, cell, two))
         else:
             break
     return points, tets
+
+
+def true_boundary(tets: Ints, seam: Ints | None = None) -> tuple[Ints, Ints]:
+    """Find the faces of one cell only, but for those of a seam: faces (b, 3) and the cell of each (b,)."""
+    # numba takes half a second to load, which no refused case file should cost
+    from pipeline.geometry.adjacency import boundary_of, neighbors
+
+    faces, cell = boundary_of(tets, neighbors(tets))
+    if seam is None or len(seam) == 0:
+        return faces, cell
+    true = rows_of(np.sort(faces, axis=1), seam) < 0
+    return faces[true], cell[true]
 
 
 def split_longest(points: Floats, tets: Ints, chosen: npt.NDArray[np.bool_]) -> tuple[Floats, Ints]:
@@ -82,8 +97,7 @@ def _with_centers(points: Floats, tets: Ints, chosen: Ints) -> tuple[Floats, Int
     )
 
 
-def _opposite_edges(tets: Ints, cells: Ints) -> Ints:
-    faces, owner = boundary(tets)
+def _opposite_edges(tets: Ints, faces: Ints, owner: Ints, cells: Ints) -> Ints:
     order = np.argsort(owner, kind="stable")
     owner, faces = owner[order], faces[order]
     pair = faces[np.searchsorted(owner, cells)[:, None] + np.arange(2)]  # (cells, 2 faces, 3 corners)

@@ -11,16 +11,20 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from pipeline.data import Ints
-from pipeline.geometry.adjacency import neighbors
-from pipeline.geometry.tets import boundary
 
 
-def in_crevice(tets: Ints, vertices: int, faulty: npt.NDArray[np.bool_], stuck: bool) -> npt.NDArray[np.bool_]:
+def in_crevice(
+    tets: Ints, walls: Ints, at_wall: Ints, vertices: int, faulty: npt.NDArray[np.bool_], stuck: bool
+) -> npt.NDArray[np.bool_]:
     """Find the faulty cells that lie in the tip of a wedge.
 
     Parameters
     ----------
     tets : (m, 4) int array
+    walls : (b, 3) int array
+        Faces on the boundary.
+    at_wall : (b,) int array
+        Cell of each.
     vertices : int
         Number of vertices.
     faulty : (m,) bool array
@@ -33,31 +37,30 @@ def in_crevice(tets: Ints, vertices: int, faulty: npt.NDArray[np.bool_], stuck: 
     -------
     (m,) bool array
     """
-    faces, cell = boundary(tets)
     touching = np.zeros(len(tets), dtype=bool)
-    touching[cell] = True
+    touching[at_wall] = True
     tip: npt.NDArray[np.bool_] = faulty & touching
     if not stuck:
         on_boundary = np.zeros(vertices, dtype=bool)
-        on_boundary[faces] = True
+        on_boundary[walls] = True
         tip &= on_boundary[tets].all(axis=1)
     return tip
 
 
-def largest_part(tets: Ints) -> npt.NDArray[np.bool_]:
+def largest_part(across: Ints) -> npt.NDArray[np.bool_]:
     """Find the cells of the largest part of a mesh, parts being joined through faces.
 
     Parameters
     ----------
-    tets : (m, 4) int array
+    across : (m, 4) int array
+        Neighbor of each cell across each face, -1 on the boundary.
 
     Returns
     -------
     (m,) bool array
     """
-    across = neighbors(tets)
     cell, side = np.nonzero(across >= 0)
-    links = coo_array((np.ones(len(cell), dtype=np.int8), (cell, across[cell, side])), shape=(len(tets),) * 2)
+    links = coo_array((np.ones(len(cell), dtype=np.int8), (cell, across[cell, side])), shape=(len(across),) * 2)
     _, part = connected_components(links, directed=False)
     result: npt.NDArray[np.bool_] = part == np.bincount(part).argmax()
     return result

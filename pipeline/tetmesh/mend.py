@@ -10,10 +10,10 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from pipeline.data import Floats, Ints
 from pipeline.geometry.adjacency import cells_at_vertices, neighbors
+from pipeline.geometry.compiled import compiled
 from pipeline.geometry.tets import FACES, volumes
 
 Vector = tuple[float, float, float]
@@ -29,13 +29,13 @@ _TRIALS = 40  # places tried per vertex and sweep
 _LARGEST_STEP = 0.35  # of the mean edge length at the vertex
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled
 def _corner(points: Floats, tets: Ints, cell: int, k: int) -> Vector:
     vertex = tets[cell, k]
     return (points[vertex, 0], points[vertex, 1], points[vertex, 2])
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled
 def _center(points: Floats, tets: Ints, cell: int) -> Vector:
     x = y = z = 0.0
     for k in range(4):
@@ -46,22 +46,22 @@ def _center(points: Floats, tets: Ints, cell: int) -> Vector:
     return (0.25 * x, 0.25 * y, 0.25 * z)
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled
 def _minus(a: Vector, b: Vector) -> Vector:
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled
 def _dot(a: Vector, b: Vector) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled
 def _cross(a: Vector, b: Vector) -> Vector:
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled
 def _fault(points: Floats, tets: Ints, across: Ints, cell: int, side: int) -> float:
     """How far the face of a cell is beyond what is aimed at; 1 is the aim, above it is a fault."""
     other = across[cell, side]
@@ -95,7 +95,7 @@ def _fault(points: Floats, tets: Ints, across: Ints, cell: int, side: int) -> fl
     return float(max(angle / _AIM_ANGLE, skew / reach / _AIM_SKEWNESS, _AIM_WEIGHT / weight))
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled
 def _flatness(points: Floats, tets: Ints, cell: int, smallest: float) -> float:
     """0 for a cell of at least the smallest volume, else above every fault, and the more the worse it is inverted."""
     a = _corner(points, tets, cell, 0)
@@ -104,7 +104,7 @@ def _flatness(points: Floats, tets: Ints, cell: int, smallest: float) -> float:
     return 0.0 if volume >= smallest else 10.0 * _HOPELESS * (2.0 - volume / smallest)
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled
 def _indeterminacy(points: Floats, tets: Ints, across: Ints, cell: int) -> float:
     """Fault of a cell whose inner faces are too nearly parallel to carry a gradient; 1 is the aim."""
     inner = 0
@@ -132,7 +132,7 @@ def _indeterminacy(points: Floats, tets: Ints, across: Ints, cell: int) -> float
     return min(_HOPELESS, math.sqrt(_AIM_DETERMINANT / max(determinant, 1e-30)))
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled
 def _cost_around(
     points: Floats, tets: Ints, across: Ints, first: Ints, cells: Ints, vertex: int, smallest: float, stop: float
 ) -> float:
@@ -148,7 +148,7 @@ def _cost_around(
     return float(cost)
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled
 def _update(points: Floats, tets: Ints, across: Ints, which: Ints, smallest: float, faults: Floats) -> None:
     """Measure some cells again: the flatness of each, or the worst fault of it and its faces."""
     for cell in which:
@@ -158,7 +158,7 @@ def _update(points: Floats, tets: Ints, across: Ints, which: Ints, smallest: flo
         faults[cell] = worst
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@compiled
 def _move(
     points: Floats,
     tets: Ints,
@@ -204,6 +204,29 @@ def _move(
     return vertices[moved]
 
 
+def faults(points: Floats, tets: Ints, across: Ints) -> Floats:
+    """How far each cell is beyond what is aimed at, by itself or by a face; above 1 it is faulty.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+    tets, across : (m, 4) int arrays
+        Tetrahedra, and the neighbor of each across each face, -1 on the boundary.
+
+    Returns
+    -------
+    (m,) array
+    """
+    found = np.zeros(len(tets))
+    _update(points, tets, across, np.arange(len(tets)), smallest_volume(points, tets), found)
+    return found
+
+
+def smallest_volume(points: Floats, tets: Ints) -> float:
+    """Six times the volume below which a cell counts as flat."""
+    return _SMALLEST * float(np.median(6.0 * volumes(points, tets)))
+
+
 def mended(
     points: Floats, tets: Ints, free: Floats, leash: Floats, sweeps: int, seed: int = 0
 ) -> tuple[Floats, npt.NDArray[np.bool_]]:
@@ -234,18 +257,18 @@ def mended(
     across = neighbors(tets)
     first, cells = cells_at_vertices(tets, len(points))
     rng = np.random.default_rng(seed)
-    smallest = _SMALLEST * float(np.median(6.0 * volumes(result, tets)))
+    smallest = smallest_volume(result, tets)
     homes = result.copy()
-    faults = np.zeros(len(tets))
-    _update(result, tets, across, np.arange(len(tets)), smallest, faults)
+    found = np.zeros(len(tets))
+    _update(result, tets, across, np.arange(len(tets)), smallest, found)
     for _ in range(sweeps):
         directions = rng.standard_normal((_TRIALS, 3))
         directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-        vertices = np.unique(tets[faults > 1.0])
+        vertices = np.unique(tets[found > 1.0])
         moved = _move(result, tets, across, first, cells, vertices, homes, leash, free, directions, smallest)
         if len(moved) == 0:
             break
         touched = np.unique(np.concatenate([cells[first[vertex] : first[vertex + 1]] for vertex in moved]))
         beside = across[touched]
-        _update(result, tets, across, np.union1d(touched, beside[beside >= 0]), smallest, faults)
-    return result, faults > 1.0
+        _update(result, tets, across, np.union1d(touched, beside[beside >= 0]), smallest, found)
+    return result, found > 1.0

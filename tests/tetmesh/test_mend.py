@@ -3,6 +3,7 @@ import numpy.typing as npt
 import pytest
 
 from pipeline.data import Floats, Ints
+from pipeline.geometry.adjacency import neighbors
 from pipeline.geometry.tets import boundary, volumes
 from pipeline.tetmesh.corners import split_corners, split_longest
 from pipeline.tetmesh.crevices import in_crevice, largest_part
@@ -93,17 +94,19 @@ def test_fitting_moves_walls_to_the_wanted_volume_and_not_across_the_planes() ->
 def test_only_cells_in_the_tip_of_a_wedge_are_filled_at_first() -> None:
     _, tets = kuhn_box(1)
     faulty = np.ones(len(tets), dtype=bool)
-    assert in_crevice(tets, 8, faulty, stuck=False).all()  # one cube: every vertex lies on the boundary
+    assert in_crevice(
+        tets, *boundary(tets), 8, faulty, stuck=False
+    ).all()  # one cube: every vertex lies on the boundary
     _, inner = kuhn_box(3)
     faulty = np.ones(len(inner), dtype=bool)
     touching = np.bincount(boundary(inner)[1], minlength=len(inner)) > 0
-    np.testing.assert_array_equal(in_crevice(inner, 64, faulty, stuck=True), touching)
+    np.testing.assert_array_equal(in_crevice(inner, *boundary(inner), 64, faulty, stuck=True), touching)
 
 
 def test_the_largest_part_is_kept() -> None:
     _, tets = kuhn_box(2)
     apart: Ints = np.concatenate([tets, np.array([[100, 101, 102, 103]])])
-    np.testing.assert_array_equal(largest_part(apart), np.arange(len(apart)) < len(tets))
+    np.testing.assert_array_equal(largest_part(neighbors(apart)), np.arange(len(apart)) < len(tets))
 
 
 def test_splitting_the_longest_edges_fills_the_same_space() -> None:

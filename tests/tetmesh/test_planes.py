@@ -6,8 +6,8 @@ import pytest
 from pipeline.data import FIBERS, PATCHES, Floats, FluidDomain, Ints, TetMesh
 from pipeline.geometry.box import Box
 from pipeline.geometry.tets import boundary
-from pipeline.tetmesh.finish import _at_fibers
 from pipeline.tetmesh.patches import assign
+from pipeline.tetmesh.settle import at_fibers
 from pipeline.tetmesh.tetwild import _plane_errors
 from tests.sample_meshes import NO_PIECES
 from tests.tetmesh.boxes import kuhn_box
@@ -53,7 +53,8 @@ def test_a_dent_is_missing_from_its_plane(axis: int, name: str) -> None:
 
 def test_only_cells_with_a_vertex_on_a_fiber_may_be_given_to_it() -> None:
     points, tets = hollow_box()
-    near = _at_fibers(points, tets, domain_of(mesh_of(points, tets)))
+    mesh = mesh_of(points, tets)
+    near = at_fibers(tets, mesh.faces[mesh.patch == PATCHES.index(FIBERS)], len(points))
     # the fiber is the cube from 0.4 to 0.6
     on_cube = np.asarray(((points > 0.39) & (points < 0.61)).all(axis=1))
     np.testing.assert_array_equal(near, on_cube[tets].any(axis=1))

@@ -1,19 +1,28 @@
 """The air in tetrahedra from a body-centered cubic lattice that the fibers' surface cuts."""
 
 import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 import psutil
 
-from pipeline.data import FluidDomain, Ints
+from pipeline.data import Floats, FluidDomain, Ints
 from pipeline.errors import StageError
+from pipeline.geometry.tets import boundary, volumes
+from pipeline.geometry.triangles import area_vectors
 from pipeline.machine import peak_memory
 from pipeline.progress import Progress
 from pipeline.tetmesh.raw import RawMesh
 from pipeline.tetmesh.settings import MEMORY_SHARE, TetmeshSettings
 
+if TYPE_CHECKING:
+    from pipeline.geometry.fibers import FiberDistance
+
 _SNAP = 0.25  # cube edges between a vertex and the surface up to which the vertex moves onto it
 _LEASH = 2.0  # distances from the surface that a vertex may move, when it has to stay on a plane of the duct
+_OFFSETS = 2  # rounds: the second finds the fibers' volume right to some thousandths
 _LEVELS = 2  # doublings of the cubes' edge
 _BYTES = 40  # of memory for each lattice point, when the tetrahedra are made of a lattice that is mostly at its finest
 
@@ -52,7 +61,6 @@ def stuffed(domain: FluidDomain, settings: TetmeshSettings, unit: float, tell: P
     from pipeline.geometry.fibers import FiberDistance
     from pipeline.tetmesh.lattice.cubes import lattice_tets
     from pipeline.tetmesh.lattice.octree import octree
-    from pipeline.tetmesh.lattice.stuffing import crossed_edges, kept
 
     began = time.monotonic()
     lower, upper = np.array(domain.box.lower), np.array(domain.box.upper)
@@ -78,21 +86,71 @@ def stuffed(domain: FluidDomain, settings: TetmeshSettings, unit: float, tell: P
     places, tets = lattice_tets(tree)
 
     tell(f"cutting the fibers out of {len(tets)} tetrahedra", 0.4)
-    plane = np.where(places == 0, -1, np.where(places == 2 * counts, 1, 0)).astype(np.int8)
-    points = places * (size / (2 * counts))
+    lattice = Lattice(
+        points=places * (size / (2 * counts)),
+        plane=np.where(places == 0, -1, np.where(places == 2 * counts, 1, 0)).astype(np.int8),
+        tets=tets,
+        edge=edge,
+        size=size,
+    )
     value = distance.on_lattice[tuple(places.T)].astype(np.float64)
-    near = np.flatnonzero(np.abs(value) < _SNAP * edge)
-    points[near], done = distance.snapped(points[near], (plane[near] == 0).astype(np.float64), _LEASH * _SNAP * edge)
+    offset = 0.0
+    for _ in range(_OFFSETS):
+        points, plane, cells = _cut(lattice, value - offset, distance.thicker(offset))
+        # chords lie within a circle: the fibers have to be a little thicker for their volume to be right
+        offset += (volumes(points, cells).sum() - domain.volume / unit**3) / _wall_area(points, cells, plane)
+    in_meters = np.where(plane < 0, lower, np.where(plane > 0, upper, points * unit + lower))
+    return RawMesh(in_meters, cells, time.monotonic() - began, peak_memory())
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Lattice:
+    """Tetrahedra that fill the duct; lengths are in fiber diameters from its lower corner.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+    plane : (n, 3) int8 array
+        Along each axis: -1 on the duct's lower plane, 1 on its upper plane, 0 between.
+    tets : (m, 4) int array
+    edge : float
+        Of the smallest cubes.
+    size : (3,) array
+        Of the duct.
+    """
+
+    points: Floats
+    plane: npt.NDArray[np.int8]
+    tets: Ints
+    edge: float
+    size: Floats
+
+
+def _cut(lattice: Lattice, value: Floats, distance: "FiberDistance") -> tuple[Floats, npt.NDArray[np.int8], Ints]:
+    """Move vertices near the surface onto it, cut what still crosses it, and keep what lies in the air."""
+    from pipeline.tetmesh.lattice.stuffing import crossed_edges, kept
+
+    points, plane = lattice.points.copy(), lattice.plane
+    near = np.flatnonzero(np.abs(value) < _SNAP * lattice.edge)
+    free = (plane[near] == 0).astype(np.float64)
+    points[near], done = distance.snapped(points[near], free, _LEASH * _SNAP * lattice.edge)
     side = np.sign(value).astype(np.int8)
     side[near] = np.where(done, 0, np.sign(distance.at(points[near])))
-    edges = crossed_edges(tets, side)
+    edges = crossed_edges(lattice.tets, side)
     crossings = distance.crossings(points[edges[:, 0]], points[edges[:, 1]])
     points = np.concatenate([points, crossings])
     ends = plane[edges[:, 0]], plane[edges[:, 1]]
     plane = np.concatenate([plane, np.where(ends[0] == ends[1], ends[0], np.int8(0))])
-    in_meters = np.where(plane < 0, lower, np.where(plane > 0, upper, points * unit + lower))
-    found = kept(in_meters, tets, side, edges, value)
-    return RawMesh(in_meters, found, time.monotonic() - began, peak_memory())
+    points = np.where(plane < 0, 0.0, np.where(plane > 0, lattice.size, points))
+    return points, plane, kept(points, lattice.tets, side, edges, value)
+
+
+def _wall_area(points: Floats, tets: Ints, plane: npt.NDArray[np.int8]) -> float:
+    """Area of the boundary that lies on no plane of the duct."""
+    faces, _ = boundary(tets)
+    on_plane = [(plane[faces][:, :, axis] == end).all(axis=1) for axis in range(3) for end in (-1, 1)]
+    walls = faces[~np.logical_or.reduce(on_plane)]
+    return float(np.linalg.norm(area_vectors(points, walls), axis=1).sum())
 
 
 def _distances(edge: float, settings: TetmeshSettings) -> tuple[float, ...]:
