@@ -289,7 +289,7 @@ LINE = (
     Stage(
         "tetmesh", ("enclosure",), ("tetmesh",), ("tetmesh", "openfoam"), ("pytetwild", "numpy", "numba"), _make_tetmesh
     ),
-    Stage("quality", ("tetmesh",), ("quality",), ("quality",), ("numpy",), _make_quality),
+    Stage("quality", ("tetmesh",), ("quality",), ("quality", "openfoam"), ("numpy",), _make_quality),
     Stage(
         "export",
         ("tetmesh",),
@@ -313,7 +313,7 @@ LINE = (
         "report",
         ("mat", "surface", "enclosure", "tetmesh", "quality", "export", "compare", "solve"),
         tuple(Case.model_fields),
-        ("report", "analytics", "quality"),
+        ("report", "analytics", "openfoam", "quality"),
         ("jinja2", "matplotlib", "pyvista"),
         _make_report,
     ),

@@ -7,9 +7,6 @@ import numpy as np
 
 from pipeline.geometry.triangles import Floats, Ints
 
-TINY = 1e-150
-"""Keeps a quotient of nothing by nothing at 0, as OpenFOAM's ROOTVSMALL."""
-
 
 def by_size(offsets: Ints) -> Iterator[tuple[Ints, Ints]]:
     """Group polygons by their number of corners, so that each group is one array.
@@ -190,35 +187,3 @@ def polyhedra(points: Floats, corners: Ints, offsets: Ints, owner: Ints, neighbo
     solid = volumes != 0
     cell_centers = np.where(solid[:, None], moments / np.where(solid, volumes, 1.0)[:, None], estimate)
     return Polyhedra(areas, centers + middle, cell_centers + middle, volumes / 3.0)
-
-
-def determinants(areas: Floats, owner: Ints, neighbour: Ints, cells: int) -> Floats:
-    r"""How well the internal faces of each cell determine a gradient, as OpenFOAM measures it.
-
-    .. math:: \left|\det \sum_f \frac{S_f S_f^T}{\overline{|S|}^2}\right| / 8
-
-    Parameters
-    ----------
-    areas : (faces, 3) array [m2]
-    owner, neighbour : int arrays
-        As in `pipeline.data.FaceMesh`.
-    cells : int
-
-    Returns
-    -------
-    (cells,) array [1]
-        1 for a cube among cubes; 0 where all internal faces lie in two directions, so that no gradient is known.
-    """
-    n = len(neighbour)
-    inner = areas[:n]
-    size = np.linalg.norm(inner, axis=1)
-    upper = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
-    sums = np.zeros((cells, 8))
-    for cell in (owner[:n], neighbour):
-        columns = [inner[:, i] * inner[:, j] for i, j in upper]
-        for k, column in enumerate([*columns, size, np.ones(n)]):
-            sums[:, k] += np.bincount(cell, column, cells)
-    mean = sums[:, 6] / np.maximum(sums[:, 7], 1.0)
-    xx, xy, xz, yy, yz, zz = sums[:, :6].T / (mean**2 + TINY)
-    result: Floats = np.abs(xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)) / 8.0
-    return result

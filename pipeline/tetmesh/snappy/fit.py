@@ -7,10 +7,10 @@ are tenths of a percent. The same is done for tetrahedra in `pipeline.tetmesh.fi
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 
-from pipeline.data import FaceMesh, Floats
+from pipeline.data import FaceMesh, Floats, Ints
 from pipeline.geometry.polyhedra import polygons
-from pipeline.tetmesh.snappy.trim import points_of
 
 _ROUNDS = 4  # the relation is nearly linear: each round leaves some percent of the error before
 _SMALLEST = 0.5  # share of its volume that every cell keeps, or its points stay where they are
@@ -54,7 +54,13 @@ def fitted(mesh: FaceMesh, patch: str, free: Floats, volume: float) -> FaceMesh:
         squeezed = moved.polyhedra().volumes < _SMALLEST * start
         if squeezed.any():
             # they stay where they are, and the others move in the next round
-            movable[points_of(mesh, squeezed)] = 0.0
+            movable[_points_of(mesh, squeezed)] = 0.0
             continue
         mesh = moved
     return mesh
+
+
+def _points_of(mesh: FaceMesh, cells: npt.NDArray[np.bool_]) -> Ints:
+    face = cells[mesh.owner]
+    face[: mesh.internal] |= cells[mesh.neighbour]
+    return np.unique(mesh.corners[np.repeat(face, np.diff(mesh.offsets))])

@@ -19,10 +19,10 @@ from pipeline.tetmesh.child import Limits
 from pipeline.tetmesh.finish import TetmeshMeasures
 from pipeline.tetmesh.patches import planes
 from pipeline.tetmesh.settings import MEMORY_SHARE, TetmeshSettings
+from pipeline.tetmesh.snappy.blind import without_blind_cells
 from pipeline.tetmesh.snappy.case import write_case
 from pipeline.tetmesh.snappy.fit import fitted
 from pipeline.tetmesh.snappy.running import run_case
-from pipeline.tetmesh.snappy.trim import blind, without
 
 CASE = "snappy"
 """Folder of the stage's result that holds the case."""
@@ -64,9 +64,8 @@ def snapped(
         shutil.rmtree(case / "constant" / "polyMesh")
     _check_planes(mesh, domain)
     raw = mesh
-    tell("giving the tips of wedges to the fibers")
-    dropped, faulty = blind(mesh, FIBERS)
-    mesh = without(mesh, dropped, FIBERS)
+    tell("joining cells in which no gradient is known")
+    mesh, faulty = without_blind_cells(mesh, FIBERS)
     filled = 1.0 - mesh.volume / raw.volume
     tell("restoring the fibers' volume")
     mesh = fitted(mesh, FIBERS, _free_axes(mesh.points, domain.box), domain.volume)

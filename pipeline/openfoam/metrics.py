@@ -7,7 +7,10 @@ C and N the centers of its owner and neighbour, d = N - C, V a cell's volume. Ea
 import numpy as np
 
 from pipeline.data import FaceMesh, Floats
-from pipeline.geometry.polyhedra import TINY, Polyhedra, by_size, determinants, sum_per_cell
+from pipeline.geometry.polyhedra import Polyhedra, by_size, sum_per_cell
+
+TINY = 1e-150
+"""Keeps a quotient of nothing by nothing at 0, as OpenFOAM's ROOTVSMALL."""
 
 
 def _dot(a: Floats, b: Floats) -> Floats:
@@ -81,7 +84,19 @@ def determinant(mesh: FaceMesh, shape: Polyhedra) -> Floats:
 
     1 for a cube among cubes; 0 where all internal faces lie in two directions, so that no gradient is known.
     """
-    return determinants(shape.areas, mesh.owner, mesh.neighbour, mesh.cells)
+    n = mesh.internal
+    inner = shape.areas[:n]
+    size = _length(inner)
+    upper = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
+    sums = np.zeros((mesh.cells, 8))
+    for cell in (mesh.owner[:n], mesh.neighbour):
+        columns = [inner[:, i] * inner[:, j] for i, j in upper]
+        for k, column in enumerate([*columns, size, np.ones(n)]):
+            sums[:, k] += np.bincount(cell, column, mesh.cells)
+    mean = sums[:, 6] / np.maximum(sums[:, 7], 1.0)
+    xx, xy, xz, yy, yz, zz = sums[:, :6].T / (mean**2 + TINY)
+    result: Floats = np.abs(xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)) / 8.0
+    return result
 
 
 def face_weight(mesh: FaceMesh, shape: Polyhedra) -> Floats:
