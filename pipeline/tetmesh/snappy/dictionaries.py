@@ -102,7 +102,7 @@ castellatedMeshControls
     }}
     resolveFeatureAngle 30;
     refinementRegions
-    {{
+    {{{_regions(layout)}
     }}
     locationInMesh  {format_vector(layout.inside)};
     allowFreeStandingZoneFaces false;
@@ -163,6 +163,19 @@ meshQualityControls
 mergeTolerance  1e-6;
 """,
     )
+
+
+def _regions(layout: Layout) -> str:
+    if not layout.reach:
+        return ""
+    # from the nearest, to the highest level, outward
+    levels = " ".join(f"({layout.reach[k]!r} {k + 1})" for k in reversed(range(layout.level)))
+    return f"""
+        {FIBERS}
+        {{
+            mode            distance;
+            levels          ({levels});
+        }}"""
 
 
 def format_control() -> str:

@@ -25,6 +25,8 @@ class Layout:
         How often a block at the fibers is halved along each axis.
     buffer : int
         Cells of each size between a smaller and a larger one.
+    reach : tuple of floats
+        Distance from the fibers within which each cell is halved, for level 0, 1, up to the last but one.
     inside : tuple of 3 floats
         A point in the air, within a cell whatever its level.
     """
@@ -32,6 +34,7 @@ class Layout:
     counts: tuple[int, int, int]
     level: int
     buffer: int
+    reach: tuple[float, ...]
     inside: tuple[float, float, float]
 
 
@@ -61,7 +64,11 @@ def layout(lower: Floats, upper: Floats, fibers: Floats, settings: TetmeshSettin
     counts = np.maximum(1, np.rint((upper - lower) / (smallest * 2**level))).astype(np.int64)
     buffer = max(1, round(EDGES_PER_BLOCK / settings.growth)) if settings.growth > 0 else 1
     x, y, z = (int(count) for count in counts)
-    return Layout((x, y, z), level, buffer, _in_the_air(lower, (upper - lower) / counts, (x, y), level, fibers))
+    # snappyHexMesh itself looks for the surface between the cells' centers only, and a fiber fits between those of
+    # blocks that are longer than it is thick; no point of a cell is farther from its center than half its diagonal
+    half_diagonal = 0.5 * float(np.linalg.norm((upper - lower) / counts))
+    reach = tuple(half_diagonal / 2**halved for halved in range(level))
+    return Layout((x, y, z), level, buffer, reach, _in_the_air(lower, (upper - lower) / counts, (x, y), level, fibers))
 
 
 def _in_the_air(
