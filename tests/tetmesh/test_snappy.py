@@ -13,6 +13,7 @@ from pipeline.errors import StageError
 from pipeline.export.openfoam import read_openfoam
 from pipeline.run import Run, run
 from pipeline.tetmesh.settings import TetmeshSettings
+from pipeline.tetmesh.snappy.case import write_case
 from pipeline.tetmesh.snappy.layout import layout
 from pipeline.tetmesh.snappy.mesh import snapped
 from pipeline.tetmesh.snappy.rebuild import joined, without
