@@ -3,7 +3,7 @@
 snappyHexMesh has limits that are lengths, areas and volumes, so that it works at size one.
 Points are moved onto the fibers in ten rounds, as many as features would get, but no features are given: the default
 case's fibers then lose 0.03 % of their volume. In one round they gain 2.8 %; with the rims on the sides as features
-they lose 0.3 %, with the creases between fibers given too 2.3 %, and with creases found by snappyHexMesh they gain 2.7 %.
+they lose 0.3 %, with the creases between fibers given too 2.3 %; with creases found by snappyHexMesh they gain 2.7 %.
 """
 
 from pipeline.data import FIBERS, INLET, OUTLET, SIDES, Floats, Ints
