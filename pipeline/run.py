@@ -30,7 +30,7 @@ from pipeline.solve import Bed, openfoam_missing, solve
 from pipeline.surface.files import write_surface
 from pipeline.surface.measures import measure_surface
 from pipeline.surface.union import unite
-from pipeline.tetmesh.fill import fill
+from pipeline.tetmesh.fill import engine_missing, fill
 from pipeline.tetmesh.finish import TetmeshMeasures
 
 SOLVING = ".solving"
@@ -179,7 +179,7 @@ def _make_enclosure(run: Run, into: Path, tell: Progress) -> Counts:
 
 
 def _make_tetmesh(run: Run, into: Path, tell: Progress) -> Counts:
-    mesh, measures = fill(run.domain, run.case.tetmesh, tell)
+    mesh, measures = fill(run.domain, run.case.tetmesh, tell, into)
     store.save(mesh, into / "mesh.npz")
     store.write_json(into / "measures.json", measures)
     return {"cells": measures.cells, "volume_error": measures.volume_error}
@@ -286,13 +286,15 @@ LINE = (
     Stage("mat", (), ("mat", "flow"), ("mat", "analytics"), ("numpy", "numba"), _make_mat),
     Stage("surface", ("mat",), ("surface",), ("surface",), ("manifold3d", "numpy"), _make_surface),
     Stage("enclosure", ("surface",), ("enclosure",), ("enclosure",), ("manifold3d", "numpy"), _make_enclosure),
-    Stage("tetmesh", ("enclosure",), ("tetmesh",), ("tetmesh",), ("pytetwild", "numpy", "numba"), _make_tetmesh),
-    Stage("quality", ("tetmesh",), ("quality",), ("quality",), ("numpy",), _make_quality),
+    Stage(
+        "tetmesh", ("enclosure",), ("tetmesh",), ("tetmesh", "openfoam"), ("pytetwild", "numpy", "numba"), _make_tetmesh
+    ),
+    Stage("quality", ("tetmesh",), ("quality",), ("quality", "openfoam"), ("numpy",), _make_quality),
     Stage(
         "export",
         ("tetmesh",),
         ("export", "flow", "enclosure"),
-        ("export", "quality"),
+        ("export", "openfoam", "quality"),
         ("numpy", "pyvista"),
         _make_export,
     ),
@@ -301,7 +303,7 @@ LINE = (
         "solve",
         ("mat", "export", "compare"),
         ("solve", "flow", "mat"),
-        ("solve", "analytics"),
+        ("solve", "openfoam", "analytics"),
         ("foamlib",),
         _make_solve,
         _no_solver,
@@ -311,7 +313,7 @@ LINE = (
         "report",
         ("mat", "surface", "enclosure", "tetmesh", "quality", "export", "compare", "solve"),
         tuple(Case.model_fields),
-        ("report", "analytics", "quality"),
+        ("report", "analytics", "openfoam", "quality"),
         ("jinja2", "matplotlib", "pyvista"),
         _make_report,
     ),
@@ -356,12 +358,20 @@ def run(
     """
     outcomes = []
     this = Run(case, folder)
+    _refuse_missing_engine(this, until)
     with store.locked(folder):
         store.write_json(folder / CASE, case.model_dump(mode="json"))
         for stage in _wanted(until):
             if stage.name not in without:
                 outcomes.append(_step(stage, this, stage.name in force, tell))
     return outcomes
+
+
+def _refuse_missing_engine(run: Run, until: str) -> None:
+    # before the mat and its surface are made for nothing; a mesh that is there may still hold
+    lacking = engine_missing(run.case.tetmesh)
+    if lacking and "tetmesh" in [stage.name for stage in _wanted(until)] and run.manifest("tetmesh") is None:
+        raise StageError(lacking)
 
 
 def report(folder: Path, tell: Progress = silent) -> Path:

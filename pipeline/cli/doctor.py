@@ -5,11 +5,16 @@ import os
 import platform
 import shutil
 import subprocess
+from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import psutil
 
-_OPENFOAM = ("checkMesh", "simpleFoam")
+from pipeline.openfoam.environment import INSTALL, environment
+from pipeline.tetmesh.snappy.running import PARALLEL, PROGRAMS
+
+_SOLVER = ("checkMesh", "simpleFoam")
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +36,11 @@ def examine() -> list[Finding]:
             continue
         name = requirement.split(">")[0].split(";")[0].strip()
         findings.append(_library(name))
-    findings.append(_openfoam())
+    findings += [
+        _openfoam(),
+        _programs("snappyHexMesh", (*PROGRAMS, *PARALLEL), 'only tetmesh.engine = "snappy" needs it'),
+        _programs("MPI", ("mpirun",), "only solve.cores and tetmesh.cores above 1 need it"),
+    ]
     memory = psutil.virtual_memory()
     enough = memory.available >= 4 * 2**30
     findings.append(
@@ -55,18 +64,18 @@ def _library(name: str) -> Finding:
 
 
 def _openfoam() -> Finding:
-    missing = [program for program in _OPENFOAM if shutil.which(program) is None]
-    if missing:
-        return Finding(
-            "OpenFOAM",
-            f"{', '.join(missing)} not on the PATH",
-            False,
-            False,
-            "only `solve` needs it; on Debian: apt-get install openfoam",
-        )
-    environment = {"WM_PROJECT_DIR": "/usr/share/openfoam", **os.environ}
+    found = _programs("OpenFOAM", _SOLVER, "only `solve` needs it")
+    if not found.fine:
+        return found
     answer = subprocess.run(
-        ["simpleFoam", "-help"], capture_output=True, text=True, env=environment, check=False, timeout=60
+        ["simpleFoam", "-help"], capture_output=True, text=True, env=environment(Path.cwd()), check=False, timeout=60
     )
     version = next((line.split(":", 1)[1].strip() for line in answer.stdout.splitlines() if "Using" in line), "found")
     return Finding("OpenFOAM", version, True, False)
+
+
+def _programs(name: str, programs: Sequence[str], purpose: str) -> Finding:
+    missing = [program for program in programs if shutil.which(program) is None]
+    if missing:
+        return Finding(name, f"{', '.join(missing)} not on the PATH", False, False, f"{purpose}; {INSTALL}")
+    return Finding(name, "found", True, False)

@@ -9,9 +9,9 @@ import psutil
 
 from pipeline.data import FaceMesh
 from pipeline.errors import StageError
-from pipeline.export.openfoam.read import LARGEST_FILE, read_openfoam
 from pipeline.export.read_exchange import read_exchange
 from pipeline.export.read_fluent import read_fluent
+from pipeline.openfoam.read import LARGEST_FILE, read_openfoam
 
 
 def read_mesh(path: Path) -> FaceMesh:

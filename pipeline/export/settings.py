@@ -4,8 +4,9 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
+from pipeline.openfoam.foam_file import Encoding
+
 Format = Literal["openfoam", "vtk", "fluent", "gmsh", "abaqus", "nastran", "su2", "medit"]
-Encoding = Literal["binary", "ascii"]
 Dialect = Literal["com", "org"]
 FiberWall = Literal["no_slip", "slip"]
 

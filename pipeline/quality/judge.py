@@ -7,8 +7,8 @@ import numpy as np
 
 from pipeline.data import FaceMesh, Floats, Metric, QualityReport
 from pipeline.geometry.polyhedra import Polyhedra
+from pipeline.openfoam import metrics as definitions
 from pipeline.progress import Progress, silent
-from pipeline.quality import metrics as definitions
 from pipeline.quality.settings import QualitySettings
 
 WORST = 5

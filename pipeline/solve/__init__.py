@@ -1,6 +1,6 @@
 """OpenFOAM runs of an exported case."""
 
-from pipeline.solve.environment import openfoam_missing
+from pipeline.openfoam.environment import openfoam_missing
 from pipeline.solve.running import Bed, solve
 from pipeline.solve.settings import SolveSettings
 

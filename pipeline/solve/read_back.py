@@ -72,13 +72,3 @@ def residuals(log: str) -> dict[str, float]:
     {'p': 0.5}
     """
     return {name: float(value) for name, value in _RESIDUAL.findall(log)}
-
-
-def tail(log: Path, lines: int = 20, size: int = 20_000) -> str:
-    """Give the last lines of a log, for an error message."""
-    if not log.exists():
-        return "(no log)"
-    with log.open("rb") as file:
-        file.seek(max(0, log.stat().st_size - size))
-        text = file.read().decode("utf-8", errors="replace")
-    return "\n".join(text.strip().split("\n")[-lines:])

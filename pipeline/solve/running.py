@@ -1,17 +1,11 @@
 """One run of OpenFOAM: started or continued, watched, stopped when the pressure drop has settled, read back."""
 
-import contextlib
-import ctypes
 import hashlib
 import math
-import os
 import re
 import shutil
-import signal
 import subprocess
-import sys
 import time
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,9 +13,10 @@ import numpy as np
 
 from pipeline.data import Floats, Flow, Solution
 from pipeline.errors import StageError
+from pipeline.openfoam.environment import openfoam_missing
+from pipeline.openfoam.process import call, running, tail
 from pipeline.progress import Progress, silent
 from pipeline.solve import read_back
-from pipeline.solve.environment import environment, openfoam_missing
 from pipeline.solve.settings import SolveSettings
 from pipeline.solve.settled import change
 
@@ -31,7 +26,6 @@ LOST_MASS = 0.5
 """A run diverges where this share of the air is lost or found between inlet and outlet."""
 _POLL = 0.3  # seconds between two looks at a run
 _SAVES = 100  # iterations between two states that a killed run continues from
-_PR_SET_PDEATHSIG = 1
 _KEY, _SECONDS, _STOP = "fibertwin.key", "fibertwin.seconds", "stop"
 
 
@@ -104,7 +98,7 @@ def solve(
     if settings.cores > 1:
         command = ["mpirun", "-np", str(settings.cores), program, "-parallel"]
     try:
-        with _running(command, work, f"log.{program}") as solver:
+        with running(command, work, work / f"log.{program}") as solver:
             settled = _watch(solver, work, flow, settings, progress, work / f"log.{program}")
     finally:
         seconds = before + time.monotonic() - began
@@ -121,7 +115,7 @@ def _prepare(case: Path, work: Path, settings: SolveSettings) -> None:
         shutil.copytree(case, work)
         if settings.cores > 1:
             _edit(work / "system/decomposeParDict", numberOfSubdomains=settings.cores, n=f"(1 1 {settings.cores})")
-            _call(["decomposePar", "-force"], work, "log.decomposePar")
+            call(["decomposePar", "-force"], work)
         # last, so that a copy that was killed halfway is not taken for a run
         key_file.write_text(key)
     (work / _STOP).unlink(missing_ok=True)
@@ -162,48 +156,6 @@ def _edit(path: Path, **entries: object) -> None:
     path.write_text(text, encoding="ascii")
 
 
-def _call(command: list[str], work: Path, log: str) -> None:
-    with (work / log).open("wb") as file:
-        done = subprocess.run(
-            command, cwd=work, env=environment(work), stdout=file, stderr=subprocess.STDOUT, check=False
-        )
-    if done.returncode:
-        raise StageError(f"{command[0]} failed (exit code {done.returncode}):\n{read_back.tail(work / log)}")
-
-
-def _end_with_parent() -> None:
-    """Let Linux end the solver when this process is killed, or it would go on writing into the next run's folder."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
-
-
-@contextlib.contextmanager
-def _running(command: list[str], work: Path, log_name: str) -> Iterator["subprocess.Popen[bytes]"]:
-    """Run the solver in a process group of its own, which ends with the block whatever happens."""
-    with (work / log_name).open("ab") as log:
-        solver = subprocess.Popen(
-            command,
-            cwd=work,
-            env=environment(work),
-            stdout=log,
-            stderr=subprocess.STDOUT,
-            stdin=subprocess.DEVNULL,
-            start_new_session=True,
-            preexec_fn=_end_with_parent,
-        )
-    try:
-        yield solver
-    finally:
-        if solver.poll() is None:
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(solver.pid, signal.SIGTERM)
-            try:
-                solver.wait(10)
-            except subprocess.TimeoutExpired:
-                os.killpg(solver.pid, signal.SIGKILL)
-                solver.wait()
-
-
 def _watch(
     solver: "subprocess.Popen[bytes]", work: Path, flow: Flow, settings: SolveSettings, progress: Progress, log: Path
 ) -> bool:
@@ -229,13 +181,13 @@ def _watch(
         at = f"after {drops[-1, 0]:.0f} iterations" if len(drops) else "before its first iteration"
         raise _failure(f"failed {at} (exit code {code})", log)
     # the solver may also find that nothing changes any more before the window is full
-    return settled or "SIMPLE solution converged" in read_back.tail(log, 40)
+    return settled or "SIMPLE solution converged" in tail(log, 40)
 
 
 def _failure(what: str, log: Path) -> StageError:
     return StageError(
         f"{log.suffix[1:]} {what}; check the mesh's quality, refine tetmesh.edge, or look into {log}, "
-        f"which ends:\n{read_back.tail(log)}"
+        f"which ends:\n{tail(log)}"
     )
 
 
@@ -254,7 +206,7 @@ def _mass_error(work: Path) -> float:
 
 
 def _tell(progress: Progress, log: Path, drops: Floats, last: float, settings: SolveSettings) -> None:
-    found = read_back.residuals(read_back.tail(log, 60))
+    found = read_back.residuals(tail(log, 60))
     told = ", ".join(f"{name} {value:.1e}" for name, value in sorted(found.items()))
     # the change falls from 1 to the tolerance, in even steps on a logarithmic scale
     done = math.log(max(min(last, 1.0), settings.tolerance)) / math.log(settings.tolerance)

@@ -1,16 +1,22 @@
 """Fill the air with cells by the engine that the case names."""
 
+from pathlib import Path
+
 from pipeline.data import FaceMesh, FluidDomain
 from pipeline.progress import Progress, silent
 from pipeline.tetmesh.finish import TetmeshMeasures, finished
 from pipeline.tetmesh.lattice.lattice import stuffed
 from pipeline.tetmesh.settings import TetmeshSettings
+from pipeline.tetmesh.snappy.mesh import CASE, snapped
+from pipeline.tetmesh.snappy.running import missing
 from pipeline.tetmesh.tetwild import tetrahedralized
 
 _ENGINES = {"lattice": stuffed, "tetwild": tetrahedralized}
 
 
-def fill(domain: FluidDomain, settings: TetmeshSettings, tell: Progress = silent) -> tuple[FaceMesh, TetmeshMeasures]:
+def fill(
+    domain: FluidDomain, settings: TetmeshSettings, tell: Progress = silent, folder: Path | None = None
+) -> tuple[FaceMesh, TetmeshMeasures]:
     """Mesh the air, whatever the engine, as faces between cells.
 
     Parameters
@@ -18,6 +24,8 @@ def fill(domain: FluidDomain, settings: TetmeshSettings, tell: Progress = silent
     domain : FluidDomain
     settings : TetmeshSettings
     tell : Progress
+    folder : Path, optional
+        Of the stage's result, where an engine that is a program of its own leaves what it was told.
 
     Returns
     -------
@@ -28,7 +36,14 @@ def fill(domain: FluidDomain, settings: TetmeshSettings, tell: Progress = silent
     StageError
         If the engine fails, or the fibers' volume is further off than the settings allow.
     """
+    if settings.engine == "snappy":
+        return snapped(domain, settings, tell, folder / CASE if folder is not None else None)
     unit = 2.0 * float(domain.radius.mean())
     raw = _ENGINES[settings.engine](domain, settings, unit, tell)
     mesh, measures = finished(raw, domain, settings, unit, tell)
     return mesh.face_mesh(), measures
+
+
+def engine_missing(settings: TetmeshSettings) -> str | None:
+    """Say why the engine cannot run on this machine, and what to do; None where it can."""
+    return missing(settings.cores) if settings.engine == "snappy" else None

@@ -29,7 +29,7 @@ class TetmeshMeasures:
     volume_error : float [-]
         Solid volume in the duct, mesh against surface, relative.
     raw_volume_error : float [-]
-        The same as fTetWild left it, before the fibers' vertices were moved.
+        The same as the engine left it, before the fibers' points were moved.
     filled_volume : float [-]
         Share of the air, in the tips of crevices, that was given to the fibers.
     faulty_cells : int

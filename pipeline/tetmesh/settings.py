@@ -1,8 +1,8 @@
 """What a user may ask of the tetrahedral mesh."""
 
-from typing import Literal
+from typing import Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from pipeline.units import Duration, Fraction, Memory, PositiveRatio, Ratio
 
@@ -15,13 +15,18 @@ class TetmeshSettings(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    engine: Literal["lattice", "tetwild"] = Field(
+    engine: Literal["lattice", "tetwild", "snappy"] = Field(
         default="lattice",
         description="The mesher: a body-centered cubic lattice cut by the fibers (quick, the same every time), "
-        "or fTetWild.",
+        "fTetWild, or OpenFOAM's snappyHexMesh (hexahedra split near the fibers; OpenFOAM has to be installed; runs on "
+        "many cores and machines).",
     )
+    cores: int = Field(default=1, ge=1, le=4096, description="Processes that snappyHexMesh runs in; above 1 needs MPI.")
     edge: PositiveRatio = Field(
-        default=0.6, le=20, description="Edge length of the tetrahedra at the fibers, in mean fiber diameters."
+        default=0.6,
+        le=20,
+        description="Edge length of the tetrahedra at the fibers, in mean fiber diameters; snappyHexMesh's cubes "
+        "have half of it and the same volume.",
     )
     growth: Ratio = Field(
         default=0.4,
@@ -55,3 +60,11 @@ class TetmeshSettings(BaseModel):
     memory_limit: Memory | None = Field(
         default=None, description="The mesher is ended above this much memory; if left out, 85 % of the machine's."
     )
+
+    @model_validator(mode="after")
+    def _nothing_is_silently_ignored(self) -> Self:
+        others = ("envelope", "passes", "stop_energy") if self.engine == "snappy" else ("cores",)
+        for name in others:
+            if getattr(self, name) != type(self).model_fields[name].default:
+                raise ValueError(f'{name} means nothing to the engine "{self.engine}"; leave it out')
+        return self

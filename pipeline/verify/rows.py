@@ -12,7 +12,7 @@ from pathlib import Path
 
 from pipeline.data import FIBERS, Flow
 from pipeline.errors import StageError
-from pipeline.solve.environment import environment
+from pipeline.openfoam.environment import environment
 
 _NAME = "rowDrag"
 _NUMBERS_PER_BIN = 9  # total, pressure and viscous force, three components each

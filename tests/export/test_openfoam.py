@@ -9,7 +9,8 @@ from pipeline.data import FaceMesh, Patch, TetMesh
 from pipeline.errors import StageError
 from pipeline.export import export
 from pipeline.export.openfoam import read_openfoam, write_openfoam
-from pipeline.export.settings import Encoding, ExportSettings, Format
+from pipeline.export.settings import ExportSettings, Format
+from pipeline.openfoam.foam_file import Encoding
 from tests.openfoam import AIR, figures, foam, patches
 from tests.sample_meshes import duct
 

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from pipeline.errors import StageError
 from pipeline.export.openfoam import read_openfoam, write_openfoam
-from pipeline.export.settings import Encoding, ExportSettings
+from pipeline.export.settings import ExportSettings
+from pipeline.openfoam.foam_file import Encoding
 from tests.openfoam import AIR
 from tests.sample_meshes import duct
 

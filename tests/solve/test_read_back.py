@@ -1,6 +1,7 @@
 from pathlib import Path
 
-from pipeline.solve.read_back import history, residuals, tail
+from pipeline.openfoam.process import tail
+from pipeline.solve.read_back import history, residuals
 
 
 def write(path: Path, text: str) -> None:

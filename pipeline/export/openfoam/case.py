@@ -9,6 +9,7 @@ from pipeline.export.openfoam.cyclic import with_matching_sides
 from pipeline.export.openfoam.poly_mesh import write_poly_mesh
 from pipeline.export.openfoam.slip import FiberSlip
 from pipeline.export.settings import ExportSettings
+from pipeline.openfoam.decompose import format_decompose
 from pipeline.progress import Progress, silent
 
 
@@ -60,7 +61,7 @@ def write_openfoam(
     _write(folder / "system/controlDict", foam.format_control_dict(flow, settings.dialect))
     _write(folder / "system/fvSchemes", foam.format_fv_schemes(cyclic=sides == "cyclic"))
     _write(folder / "system/fvSolution", foam.format_fv_solution())
-    _write(folder / "system/decomposeParDict", foam.format_decompose(2))
+    _write(folder / "system/decomposeParDict", format_decompose(2))
     _write(folder / "case.foam", "")
     for name, script in (("Allrun", foam.format_allrun(settings.dialect)), ("Allclean", foam.ALLCLEAN)):
         _write(folder / name, script)

@@ -12,15 +12,11 @@ The schemes are the ones whose error vanishes with the mesh spacing on tetrahedr
 """
 
 from pipeline.data import FIBERS, INLET, OUTLET, Flow
-from pipeline.export.openfoam.foam_file import format_header
 from pipeline.export.settings import Dialect
+from pipeline.openfoam.foam_file import format_dictionary, format_header
 
 SOLVER: dict[Dialect, str] = {"com": "simpleFoam", "org": "foamRun"}
 """Program that runs the case; OpenFOAM.org has had one for all solvers since its version 11."""
-
-
-def _dictionary(name: str, location: str, body: str) -> str:
-    return format_header("dictionary", name, location) + "\n" + body.strip("\n") + "\n"
 
 
 def format_fv_schemes(cyclic: bool = False) -> str:
@@ -31,7 +27,7 @@ def format_fv_schemes(cyclic: bool = False) -> str:
     """
     gradient = "" if cyclic else "\n    grad(U)         pointCellsLeastSquares;"
     laplacian = "" if cyclic else "\n    laplacian(nuEff,U) Gauss linear corrected;"
-    return _dictionary(
+    return format_dictionary(
         "fvSchemes",
         "system",
         f"""
@@ -67,7 +63,7 @@ snGradSchemes
 
 def format_fv_solution() -> str:
     """`system/fvSolution`: consistent SIMPLE without relaxing the pressure."""
-    return _dictionary(
+    return format_dictionary(
         "fvSolution",
         "system",
         """
@@ -124,7 +120,7 @@ def format_control_dict(flow: Flow, dialect: Dialect = "com", iterations: int = 
             _stop(dialect),
         ]
     )
-    return _dictionary(
+    return format_dictionary(
         "controlDict",
         "system",
         f"""
@@ -220,31 +216,7 @@ nu              [0 2 -1 0 0 0 0] {flow.viscosity / flow.density!r};
 """,
         "simulationType  laminar;",
     )
-    return {name: _dictionary(name, "constant", body) for name, body in zip(names, bodies, strict=True)}
-
-
-def format_decompose(cores: int) -> str:
-    """`system/decomposeParDict`: slices across the flow, cut by a method that every build has.
-
-    Examples
-    --------
-    >>> "numberOfSubdomains 4;" in format_decompose(4) and "n       (1 1 4);" in format_decompose(4)
-    True
-    """
-    return _dictionary(
-        "decomposeParDict",
-        "system",
-        f"""
-numberOfSubdomains {cores};
-method          hierarchical;
-hierarchicalCoeffs
-{{
-    n       (1 1 {cores});
-    delta   0.001;
-    order   xyz;
-}}
-""",
-    )
+    return {name: format_dictionary(name, "constant", body) for name, body in zip(names, bodies, strict=True)}
 
 
 def format_field(name: str, kind: str, dimensions: str, internal: str, boundary: dict[str, str]) -> str:

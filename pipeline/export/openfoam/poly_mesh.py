@@ -4,14 +4,14 @@ from pathlib import Path
 
 from pipeline.data import FaceMesh, Patch
 from pipeline.errors import StageError
-from pipeline.export.openfoam.foam_file import (
+from pipeline.openfoam.foam_file import (
     LARGEST_LABEL,
+    Encoding,
     format_faces,
     format_header,
     format_labels,
     format_vectors,
 )
-from pipeline.export.settings import Encoding
 
 LOCATION = "constant/polyMesh"
 

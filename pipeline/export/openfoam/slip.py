@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeline.data import FIBERS, FaceMesh, Floats, FluidDomain
-from pipeline.export.openfoam.foam_file import format_scalars
+from pipeline.openfoam.foam_file import format_scalars
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -2,9 +2,11 @@
 
 from collections.abc import Callable, Iterable
 from itertools import pairwise
+from typing import Literal
 
 from pipeline.data import Floats, Ints
-from pipeline.export.settings import Encoding
+
+Encoding = Literal["binary", "ascii"]
 
 ARCHITECTURE = "LSB;label=32;scalar=64"
 LARGEST_LABEL = 2**31 - 1
@@ -35,6 +37,11 @@ def format_header(kind: str, name: str, location: str, encoding: Encoding = "asc
         rows.append(("note", f'"{note}"'))
     rows += [("location", f'"{location}"'), ("object", name)]
     return "FoamFile\n{\n" + "".join(f"    {key:<12}{value};\n" for key, value in rows) + "}\n"
+
+
+def format_dictionary(name: str, location: str, body: str) -> str:
+    """Give a whole dictionary: its header, and its entries as they stand."""
+    return format_header("dictionary", name, location) + "\n" + body.strip("\n") + "\n"
 
 
 def format_labels(labels: Ints, encoding: Encoding) -> bytes:

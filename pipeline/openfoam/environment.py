@@ -2,6 +2,7 @@
 
 import os
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
 
 DEBIAN_HOME = Path("/usr/share/openfoam")
@@ -18,11 +19,16 @@ def openfoam_missing(cores: int = 1, solver: str = "simpleFoam") -> str | None:
     solver : str
         ``"foamRun"`` for a case of OpenFOAM.org's dialect.
     """
-    programs = [solver] if cores == 1 else [solver, "decomposePar", "mpirun"]
+    return programs_missing([solver] if cores == 1 else [solver, "decomposePar", "mpirun"])
+
+
+def programs_missing(programs: Sequence[str]) -> str | None:
+    """Say which of some programs are not here, and what to do; None where all are."""
     missing = [program for program in programs if shutil.which(program) is None]
     if not missing:
         return None
-    return f"OpenFOAM's {' and '.join(missing)} not found on the PATH; {INSTALL}"
+    listed = " and ".join(filter(None, [", ".join(missing[:-1]), missing[-1]]))
+    return f"OpenFOAM's {listed} not found on the PATH; {INSTALL}"
 
 
 def environment(case: Path) -> dict[str, str]:
