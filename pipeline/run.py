@@ -109,9 +109,14 @@ class Run:
         return store.load(FluidDomain, self.folder / "enclosure" / "domain.npz")
 
     @property
+    def mesh_file(self) -> Path:
+        """Where the air in cells is kept."""
+        return self.folder / "tetmesh" / "mesh.npz"
+
+    @property
     def mesh(self) -> FaceMesh:
         """The air in cells."""
-        return store.load(FaceMesh, self.folder / "tetmesh" / "mesh.npz")
+        return store.load(FaceMesh, self.mesh_file)
 
     @property
     def quality(self) -> QualityReport:

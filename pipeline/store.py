@@ -30,7 +30,10 @@ MANIFEST = "manifest.json"
 _PACKAGE = Path(__file__).parent
 _SOURCES = (".py", ".jinja", ".css")
 # What no change of the case can mend, only the user: the disk and its permissions.
-_DISK_TROUBLE = {errno.ENOSPC, errno.EACCES, errno.EPERM, errno.EROFS, errno.EDQUOT, errno.ENOTDIR, errno.EFBIG}
+_DISK_TROUBLE = {
+    errno.ENOSPC, errno.EACCES, errno.EPERM, errno.EROFS, errno.EDQUOT, errno.ENOTDIR, errno.EFBIG, errno.EEXIST,
+    errno.EISDIR, errno.ENAMETOOLONG,
+}  # fmt: skip
 
 
 def digest(content: object) -> str:
@@ -186,7 +189,7 @@ def disk_trouble_explained(place: Path) -> Iterator[None]:
             raise
         raise StageError(
             f"cannot write {problem.filename or place}: {os.strerror(problem.errno or 0).lower()}; "
-            "nothing half-written was kept; free space, or choose another folder with --out"
+            "nothing half-written was kept; free space, or choose another place"
         ) from problem
 
 

@@ -99,6 +99,7 @@ def quality(
     mesh: Path,
     *,
     limits: Path | None = None,
+    report: Path | None = None,
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
     quiet: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
@@ -111,6 +112,8 @@ def quality(
         .su2, .mesh and what else meshio reads), or the folder of a run.
     limits
         A case file whose limits (``[quality]``) are held against the mesh, instead of those of checkMesh.
+    report
+        Write a page of the mesh into this file (.html): verdict, table, histograms, pictures, worst cells, provenance.
     as_json
         Print JSON with SI numbers, with the worst cells and where they are, instead of a table.
     quiet
@@ -118,7 +121,7 @@ def quality(
     """
     from pipeline.cli.judging import judge_mesh
 
-    raise SystemExit(judge_mesh(mesh, found(limits) if limits else None, as_json, quiet))
+    raise SystemExit(judge_mesh(mesh, found(limits) if limits else None, report, as_json, quiet))
 
 
 @app.command

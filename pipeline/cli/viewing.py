@@ -7,8 +7,9 @@ from rich.console import Console
 from pipeline.cli.listen import listening
 from pipeline.errors import CaseError, StageError
 from pipeline.report import subject_of
+from pipeline.report.painter import possible
 from pipeline.report.render import Painting, screenless
-from pipeline.report.scenes import SCENES, Subject, possible, show
+from pipeline.report.scenes import SCENES, Subject, show
 from pipeline.run import Run, content_of, report
 from pipeline.store import disk_trouble_explained
 
@@ -45,7 +46,7 @@ def view_run(folder: Path, scene: str | None, screenshot: Path | None) -> None:
         names = (scene,) if scene else there
         _draw(subject, {name: folder / PICTURES / f"{name}.png" for name in names}, "png")
     else:
-        show(subject, scene, f"fibertwin: {folder}")
+        show(subject, there, scene, f"fibertwin: {folder}")
 
 
 def _check_scene(scene: str, there: tuple[str, ...], folder: Path) -> None:

@@ -9,7 +9,7 @@ import psutil
 
 from pipeline.data import FaceMesh
 from pipeline.errors import StageError
-from pipeline.export.openfoam.read import LARGEST_FILE, read_openfoam
+from pipeline.export.openfoam.read import FILES, LARGEST_FILE, mesh_folder, read_openfoam
 from pipeline.export.read_exchange import read_exchange
 from pipeline.export.read_fluent import read_fluent
 
@@ -38,6 +38,12 @@ def read_mesh(path: Path) -> FaceMesh:
             return _read(path)
     except MemoryError:
         raise StageError(f"cannot read {path}: it asks for more memory than this machine has free") from None
+
+
+def mesh_files(path: Path) -> list[Path]:
+    """Give the files that `read_mesh` reads a mesh from."""
+    place = path.parent if path.suffix == ".foam" else path
+    return [mesh_folder(place) / name for name in FILES] if place.is_dir() else [place]
 
 
 @contextlib.contextmanager

@@ -43,7 +43,7 @@ def checks(content: ReportContent) -> list[Check]:
             )
         )
     if content.quality is not None:
-        found.append(_cells(content.quality))
+        found.append(cells(content.quality))
     if content.comparison is not None:
         found += _solidities(content, content.comparison)
     if content.mat is not None:
@@ -55,18 +55,19 @@ def checks(content: ReportContent) -> list[Check]:
     return found
 
 
-def verdict(content: ReportContent) -> tuple[str, str]:
+def verdict(quality: QualityReport | None) -> tuple[str, str]:
     """Give the mark and the words of the whole: that of the mesh, for only a mesh can be unfit."""
-    if content.quality is None:
+    if quality is None:
         return NOTE, "no mesh yet"
     return {
         "pass": (GOOD, "mesh is fit for a solver"),
         "warn": (NOTE, "mesh is usable, with a loss of accuracy"),
         "fail": (BAD, "mesh is not fit for a solver"),
-    }[content.quality.verdict]
+    }[quality.verdict]
 
 
-def _cells(report: QualityReport) -> Check:
+def cells(report: QualityReport) -> Check:
+    """Say whether a solver can take the mesh, and every limit that does not hold."""
     mark, title, words = {
         "pass": (GOOD, "the mesh is fit for a solver", "Every limit holds, in every cell and face."),
         "warn": (

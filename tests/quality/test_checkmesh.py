@@ -1,5 +1,6 @@
 """Agreement with OpenFOAM's own `checkMesh`, on tetrahedra, polyhedra and hexahedra with hanging nodes."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -7,6 +8,7 @@ import pytest
 from pipeline.data import FaceMesh
 from pipeline.export.openfoam import read_openfoam, write_openfoam
 from pipeline.quality import judge
+from pipeline.quality.kinds import cells_by_kind
 from tests.openfoam import AIR, figures, foam, patches
 from tests.sample_meshes import duct
 
@@ -62,6 +64,9 @@ def assert_as_checkmesh_says(case: Path, mesh: FaceMesh, *, cells_of_kind: str) 
         int(text.split("severely non-orthogonal (> 70 degrees) faces:")[1].split(".")[0]) if "severely" in text else 0
     )
     assert report.metrics["non_orthogonality"].over_limit == above
+    kinds = dict(re.findall(r"^    (hexahedra|prisms|pyramids|tetrahedra|polyhedra): +(\d+)$", text, re.MULTILINE))
+    assert len(kinds) == 5
+    assert cells_by_kind(mesh) == {kind: int(count) for kind, count in kinds.items() if int(count)}
 
 
 @pytest.fixture

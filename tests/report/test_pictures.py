@@ -10,9 +10,10 @@ from PIL import Image
 
 from pipeline.data import FIBERS, Floats
 from pipeline.report import subject_of, write_report
-from pipeline.report.painter import trimmed
+from pipeline.report.drawing import BACKGROUND
+from pipeline.report.painter import possible, trimmed
 from pipeline.report.render import Painting, rendering_environment
-from pipeline.report.scenes import BACKGROUND, SCENES, Subject, fibers_of_faces, possible
+from pipeline.report.scenes import SCENES, Subject, fibers_of_faces
 from tests.report.contents import whole
 from tests.report.pages import read
 
