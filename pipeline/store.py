@@ -28,7 +28,7 @@ from pipeline.geometry.box import Box
 T = TypeVar("T")
 MANIFEST = "manifest.json"
 _PACKAGE = Path(__file__).parent
-_SOURCES = (".py", ".jinja", ".css")
+_SOURCES = (".py", ".jinja", ".css", ".js")
 # What no change of the case can mend, only the user: the disk and its permissions.
 _DISK_TROUBLE = {
     errno.ENOSPC, errno.EACCES, errno.EPERM, errno.EROFS, errno.EDQUOT, errno.ENOTDIR, errno.EFBIG, errno.EEXIST,

@@ -100,6 +100,7 @@ def quality(
     *,
     limits: Path | None = None,
     report: Path | None = None,
+    scene: Path | None = None,
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
     quiet: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
@@ -114,6 +115,8 @@ def quality(
         A case file whose limits (``[quality]``) are held against the mesh, instead of those of checkMesh.
     report
         Write a page of the mesh into this file (.html): verdict, table, histograms, pictures, worst cells, provenance.
+    scene
+        Write the mesh into this file (.html) to turn it in a browser, offline too.
     as_json
         Print JSON with SI numbers, with the worst cells and where they are, instead of a table.
     quiet
@@ -121,7 +124,7 @@ def quality(
     """
     from pipeline.cli.judging import judge_mesh
 
-    raise SystemExit(judge_mesh(mesh, found(limits) if limits else None, report, as_json, quiet))
+    raise SystemExit(judge_mesh(mesh, found(limits) if limits else None, report, scene, as_json, quiet))
 
 
 @app.command
@@ -281,7 +284,7 @@ def report(run: Path, *, quiet: Annotated[bool, Parameter(negative="")] = False)
 
 
 @app.command
-def view(run: Path, *, scene: str | None = None, screenshot: Path | None = None) -> None:
+def view(run: Path, *, scene: str | None = None, screenshot: Path | None = None, html: Path | None = None) -> None:
     """Look at a run's geometry and mesh in a window; without a screen, draw every view into RUN/pictures.
 
     Parameters
@@ -292,10 +295,15 @@ def view(run: Path, *, scene: str | None = None, screenshot: Path | None = None)
         One view: mat-top, mat-side, duct, cut, close-up, cells, mesh-fibers or worst.
     screenshot
         Draw the view (duct unless another is named) into this file, png or jpg, instead of opening a window.
+    html
+        Write the geometry and the mesh into this file (.html) to turn them in a browser, offline too, instead.
     """
-    from pipeline.cli.viewing import view_run
+    from pipeline.cli.viewing import view_run, write_scene_of_run
 
-    view_run(run, scene, screenshot)
+    if html is not None:
+        write_scene_of_run(run, html)
+    if html is None or screenshot is not None:
+        view_run(run, scene, screenshot)
 
 
 @app.command

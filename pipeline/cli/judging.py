@@ -32,7 +32,9 @@ class _Source:
     limits_of: str
 
 
-def judge_mesh(path: Path, limits: Path | None, page: Path | None, as_json: bool, quiet: bool) -> int:
+def judge_mesh(
+    path: Path, limits: Path | None, page: Path | None, scene: Path | None, as_json: bool, quiet: bool
+) -> int:
     """Print what a mesh is like and give the exit code: 0 where every limit holds."""
     settings = read_case(limits).quality if limits else None
     with listening(Console(stderr=True), quiet or as_json) as tell:
@@ -41,14 +43,15 @@ def judge_mesh(path: Path, limits: Path | None, page: Path | None, as_json: bool
         if limits is not None and settings is not None:
             source = dataclasses.replace(source, limits=settings, limits_of=f"The limits are those of {limits}")
         report = judge(source.mesh, source.limits, tell)
-        if page is not None:
-            _write_page(path, source, report, page, tell)
+        if page or scene:
+            _write_pages(path, source, report, page, scene, tell)
     if as_json:
         sys.stdout.write(json.dumps(dataclasses.asdict(report), indent=2, allow_nan=False) + "\n")
     elif not quiet:
         _show(report)
-        if page is not None:
-            Console().print(f"read it: {page}", markup=False, highlight=False, soft_wrap=True)
+        for what, file in (("read it:", page), ("turn it:", scene)):
+            if file is not None:
+                Console().print(what, file, markup=False, highlight=False, soft_wrap=True)
     return 0 if report.passed else FELL_SHORT
 
 
@@ -59,14 +62,24 @@ def _source(path: Path) -> _Source:
     return _Source(read_mesh(path), mesh_files(path), QualitySettings(), "The limits are those of checkMesh")
 
 
-def _write_page(path: Path, source: _Source, report: QualityReport, page: Path, tell: Progress) -> None:
+def _write_pages(
+    path: Path, source: _Source, report: QualityReport, page: Path | None, scene: Path | None, tell: Progress
+) -> None:
     # pages take a second to load what they need, for nobody who wants a table only
-    from pipeline.report import MeshContent, SourceFile, write_mesh_page
+    from pipeline.report import MeshContent, SourceFile
+    from pipeline.report.layers import layers_of_mesh
+    from pipeline.report.mesh_page import write_mesh_page
+    from pipeline.report.scene_file import write_scene
 
     files = tuple(SourceFile(str(file), file.stat().st_size, file_digest(file)) for file in source.files)
     content = MeshContent(path, source.mesh, report, source.limits, source.limits_of, files)
-    with disk_trouble_explained(page):
-        write_mesh_page(content, page, tell)
+    if page is not None:
+        with disk_trouble_explained(page):
+            write_mesh_page(content, page, tell)
+    if scene is not None:
+        tell("page: scene")
+        with disk_trouble_explained(scene):
+            write_scene(layers_of_mesh(content), str(path), scene, flow=False)
 
 
 def _show(report: QualityReport) -> None:

@@ -17,6 +17,7 @@ PICTURES = "pictures"
 """Folder of a run that pictures go into when nobody names a file."""
 _KINDS = {".png": "png", ".jpg": "jpg", ".jpeg": "jpg"}
 _FIRST_CHOICE = "duct"
+_NOTHING = "{} has no mat yet, so there is nothing to see; fibertwin run makes one"
 
 
 def write_page(folder: Path, quiet: bool) -> None:
@@ -32,7 +33,7 @@ def view_run(folder: Path, scene: str | None, screenshot: Path | None) -> None:
     """Open a window on a run, or draw pictures where a file is asked for or there is no screen."""
     subject = subject_of(content_of(Run.opened(folder)))
     if subject is None:
-        raise StageError(f"{folder} has no mat yet, so there is nothing to see; fibertwin run makes one")
+        raise StageError(_NOTHING.format(folder))
     there = possible(subject)
     if scene is not None:
         _check_scene(scene, there, folder)
@@ -47,6 +48,23 @@ def view_run(folder: Path, scene: str | None, screenshot: Path | None) -> None:
         _draw(subject, {name: folder / PICTURES / f"{name}.png" for name in names}, "png")
     else:
         show(subject, there, scene, f"fibertwin: {folder}")
+
+
+def write_scene_of_run(folder: Path, path: Path) -> None:
+    """Write what a run has as a scene for a browser."""
+    from pipeline.report.layers import layers_of_run
+    from pipeline.report.scene_file import write_scene
+
+    out = Console()
+    with listening(out, False) as tell:
+        content = content_of(Run.opened(folder))
+        if content.mat is None:
+            raise StageError(_NOTHING.format(folder))
+        tell("collecting surfaces")
+        with disk_trouble_explained(path):
+            write_scene(layers_of_run(content), content.name, path)
+    size = path.stat().st_size / 1e6
+    out.print(f"{path} ({size:.1f} MB; open it in a browser)", markup=False, highlight=False, soft_wrap=True)
 
 
 def _check_scene(scene: str, there: tuple[str, ...], folder: Path) -> None:

@@ -37,9 +37,9 @@ def shown_unit(metric: Metric) -> tuple[str, float]:
     power = {"m3": 3, "m2": 2}.get(metric.unit)
     if power is None:
         return {"degree": "deg"}.get(metric.unit, metric.unit), 1.0
-    # a tenth of a unit of length is the smallest that reads well
+    # cells of a twentieth of a unit of length are the smallest whose area and volume read well
     for name, size in (("m", 1.0), ("mm", 1e-3)):
-        if abs(metric.mean) >= (0.1 * size) ** power:
+        if abs(metric.mean) >= (0.05 * size) ** power:
             return f"{name}{power}", float(round(1.0 / size) ** power)
     return f"um{power}", 1e6**power
 

@@ -37,6 +37,29 @@ def page_of(
     **made
         What the template shows beside these: `name`, `provenance` and its own sections.
     """
+    images = {
+        name: "data:image/jpeg;base64," + base64.b64encode(data).decode("ascii")
+        for name, data in pictures.files.items()
+    }
+    mark, headline = verdict
+    return (
+        templates()
+        .get_template(template)
+        .render(
+            mark=mark,
+            headline=headline,
+            tiles=tiles,
+            checks=checks,
+            steps=steps,
+            pictures=images,
+            no_pictures=pictures.trouble,
+            **made,
+        )
+    )
+
+
+def templates() -> jinja2.Environment:
+    """Give the templates of all pages; what is not given to one is an error, and not an empty place."""
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("pipeline.report"),
         autoescape=True,
@@ -46,21 +69,7 @@ def page_of(
     )
     environment.globals["table"] = table_html
     environment.filters["typeset"] = typeset
-    images = {
-        name: "data:image/jpeg;base64," + base64.b64encode(data).decode("ascii")
-        for name, data in pictures.files.items()
-    }
-    mark, headline = verdict
-    return environment.get_template(template).render(
-        mark=mark,
-        headline=headline,
-        tiles=tiles,
-        checks=checks,
-        steps=steps,
-        pictures=images,
-        no_pictures=pictures.trouble,
-        **made,
-    )
+    return environment
 
 
 def typeset(text: str) -> str:

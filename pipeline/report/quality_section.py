@@ -33,9 +33,13 @@ _UNITS = (LengthUnit("m", 1.0, 6), LengthUnit("mm", 1e3, 5), MICROMETER)
 
 
 def unit_of(mesh: FaceMesh) -> LengthUnit:
-    """Give the unit in which the mesh's largest extent is a number of at least two."""
-    size = float(np.ptp(mesh.points, axis=0).max())
-    return next((unit for unit in _UNITS if size * unit.per_meter >= 2.0), MICROMETER)
+    """Give the unit that suits a mesh."""
+    return unit_for(float(np.ptp(mesh.points, axis=0).max()))
+
+
+def unit_for(extent: float) -> LengthUnit:
+    """Give the unit in which the largest extent [m] is a number of at least two."""
+    return next((unit for unit in _UNITS if extent * unit.per_meter >= 2.0), MICROMETER)
 
 
 def quality_section(report: QualityReport, mesh: FaceMesh | None) -> dict[str, Any]:

@@ -187,25 +187,27 @@ def _fiber_surface(subject: Subject) -> "pv.PolyData":
     import pyvista as pv
 
     surface = subject.surface
-    if surface is None:
-        return _tubes(subject.mat)
-    skin = pv.PolyData.from_regular_faces(surface.points * MICRO, surface.triangles)
-    skin.cell_data["color"] = colors_by_number(surface.fiber)
+    points, triangles, fiber = (
+        tubes_of(subject.mat) if surface is None else (surface.points, surface.triangles, surface.fiber)
+    )
+    skin = pv.PolyData.from_regular_faces(points * MICRO, triangles)
+    skin.cell_data["color"] = colors_by_number(fiber)
     return skin
 
 
-def _tubes(mat: Mat) -> "pv.PolyData":
-    # before the fibers are united there are only center lines: round tubes stand for them, cut where the mat ends
+def tubes_of(mat: Mat) -> tuple[Floats, Ints, Ints]:
+    """Give round tubes in place of a surface, before the fibers are united: points [m], triangles, fiber of each."""
     import pyvista as pv
 
-    parts = []
+    points, triangles, fiber, count = [], [], [], 0
     for k, radius in enumerate(mat.radius):
         line = mat.nodes[mat.first[k] : mat.first[k + 1]] * MICRO
-        tube = pv.MultipleLines(line).tube(radius=float(radius) * MICRO, n_sides=16, capping=True)
-        tube.clear_data()
-        tube.cell_data["color"] = np.tile(colors_by_number(np.array([k])), (tube.n_cells, 1))
-        parts.append(tube)
-    return pv.merge(parts).extract_surface(algorithm="dataset_surface")
+        tube = pv.MultipleLines(line).tube(radius=float(radius) * MICRO, n_sides=16, capping=True).triangulate()
+        points.append(np.asarray(tube.points, np.float64) / MICRO)
+        triangles.append(count + np.asarray(tube.regular_faces, np.int64))
+        fiber.append(np.full(len(triangles[-1]), k))
+        count += len(points[-1])
+    return np.concatenate(points), np.concatenate(triangles), np.concatenate(fiber)
 
 
 def _mesh_fibers(subject: Subject, beyond: float | None = None) -> "pv.PolyData":

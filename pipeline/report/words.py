@@ -185,6 +185,9 @@ def steps(content: ReportContent) -> list[Step]:
         found.append(Step("Solve the flow with OpenFOAM.", f"cd {folder}/export/openfoam && ./Allrun"))
     if content.mat is not None:
         found.append(Step("Turn the geometry and the mesh in a window.", f"fibertwin view {folder}"))
+        found.append(
+            Step("Send them as one file that turns in any browser.", f"fibertwin view {folder} --html scene.html")
+        )
     if "vtk" in exported:
         found.append(Step("Open all fields in ParaView.", f"paraview {folder}/export/vtk/mesh.vtm"))
     if content.comparison is not None:

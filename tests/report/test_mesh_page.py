@@ -2,6 +2,7 @@
 
 import dataclasses
 import hashlib
+import json
 import re
 from pathlib import Path
 
@@ -14,14 +15,17 @@ from pipeline.export.read import mesh_files, read_mesh
 from pipeline.export.settings import ExportSettings
 from pipeline.quality import QualitySettings, judge
 from pipeline.report.content import MeshContent, SourceFile
+from pipeline.report.layers import layers_of_mesh
 from pipeline.report.mesh_page import filled_mesh_page, mesh_sections, subject_of_mesh, write_mesh_page
 from pipeline.report.painter import possible
 from pipeline.report.quality_section import unit_of
 from pipeline.report.render import Pictures
+from pipeline.report.scene_file import write_scene
 from tests.cli.conftest import Fibertwin
 from tests.cli.conftest import fibertwin as fibertwin  # the fixture
 from tests.cli.test_quality import good_mesh
 from tests.openfoam import AIR
+from tests.report.devtools import CHROMIUM, Browser
 from tests.report.pages import Page, read
 from tests.sample_meshes import cylinder, duct
 
@@ -125,6 +129,24 @@ def test_a_page_that_cannot_be_written_is_our_error(fibertwin: Fibertwin, mesh: 
     said = fibertwin("quality", tmp_path / "case", "--report", tmp_path / "file/page.html", "--quiet")
     assert said.code == 1
     assert said.err.startswith("error: cannot write ")
+
+
+@pytest.mark.browser
+@pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not on the PATH")
+def test_no_script_of_a_stranger_runs_in_a_browser(mesh: FaceMesh, tmp_path: Path) -> None:
+    name = "<script>document.title='run'</script><img/src=x/onerror=document.title='run'>"
+    patches = (Patch(name, mesh.patches[0].start, mesh.patches[0].count), *mesh.patches[1:])
+    evil = content(FaceMesh(mesh.points, mesh.corners, mesh.offsets, mesh.owner, mesh.neighbour, mesh.cells, patches))
+    (tmp_path / "page.html").write_text(filled_mesh_page(evil, mesh_sections(evil), Pictures()), encoding="utf-8")
+    write_scene(layers_of_mesh(evil), "a scene", tmp_path / "scene.html")
+    for file, title in (("page.html", "some/mesh.vtu · fibertwin"), ("scene.html", "a scene · fibertwin")):
+        with Browser(tmp_path / file, tmp_path / f"{file}-profile") as browser:
+            browser.wait_for("document.readyState === 'complete'")
+            browser.wait_for(f"document.body.textContent.includes({json.dumps(name)})")
+            assert browser.evaluate("document.title") == title
+            assert browser.evaluate("document.images.length") == 0
+            assert browser.complaints == []
+            assert browser.asked == []
 
 
 @pytest.mark.usefixtures("rendering")
