@@ -11,8 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from pipeline.data import FaceMesh, Floats, Ints
-from pipeline.export.vtk import volume_grid
 from pipeline.geometry.box import Box
+from pipeline.geometry.faces import compacted
+from pipeline.geometry.sections import section
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -67,33 +68,56 @@ def scaled(box: Box, scale: float) -> Box:
     return Box((scale * x0, scale * y0, scale * z0), (scale * x1, scale * y1, scale * z1))
 
 
-def add_section(plotter: "pv.Plotter", mesh: FaceMesh, axis: int, place: float, scale: float, edges: float) -> None:
-    """Draw the section of all cells with a plane across an axis; `place` [m] is where it stands on the axis."""
-    plotter.add_mesh(
-        section(mesh, axis, place, scale),
-        color=CELLS, lighting=False, show_edges=True, edge_color=EDGES, line_width=edges,
-    )  # fmt: skip
+def add_section(
+    plotter: "pv.Plotter",
+    mesh: FaceMesh,
+    axis: int,
+    place: float,
+    scale: float,
+    edges: float,
+    marked: int | None = None,
+) -> None:
+    """Draw the section of all cells with a plane across an axis.
+
+    Parameters
+    ----------
+    plotter : pyvista.Plotter
+    mesh : FaceMesh
+    axis : int
+    place : float [m]
+        Where the plane stands on the axis.
+    scale : float
+        The picture's length over the mesh's.
+    edges : float [pixel]
+        How wide the cells' outlines are.
+    marked : int, optional
+        A cell to draw in red.
+    """
+    import pyvista as pv
+
+    cut = section(mesh.points, mesh.corners, mesh.offsets, mesh.owner, mesh.neighbour, axis, place)
+    red = np.zeros(len(cut.cell), bool) if marked is None else cut.cell == marked
+    for chosen, color in ((~red, CELLS), (red, TROUBLE)):
+        if chosen.any():
+            skin = pv.PolyData.from_regular_faces(cut.points * scale, cut.triangles[chosen])
+            plotter.add_mesh(skin, color=color, lighting=False)
+    pieces = cut.outlines
+    if len(pieces):
+        lines = pv.PolyData(cut.points * scale, lines=np.insert(pieces, 0, 2, axis=1).ravel())
+        plotter.add_mesh(lines, color=EDGES, line_width=edges, lighting=False)
 
 
-def section(mesh: FaceMesh, axis: int, place: float, scale: float) -> "pv.PolyData":
-    """Cut the cells with a plane across an axis: a polygon for each cell, in scaled lengths."""
-    origin = [0.0, 0.0, 0.0]
-    origin[axis] = place * scale
-    crossing = volume_grid(mesh, cells_at(mesh, axis, place), scale)
-    return crossing.slice("xyz"[axis], origin=origin, generate_triangles=False)
+def surface_of(mesh: FaceMesh, chosen: npt.NDArray[np.bool_], scale: float) -> "pv.PolyData":
+    """Give the faces around the chosen cells, in scaled lengths: those with a chosen cell on one side only."""
+    import pyvista as pv
 
-
-def cells_at(mesh: FaceMesh, axis: int, place: float) -> npt.NDArray[np.bool_]:
-    """Find the cells on both sides of a plane across an axis."""
-    beyond = mesh.points[mesh.corners, axis] > place
-    some, every = (each.reduceat(beyond, mesh.offsets[:-1]) for each in (np.logical_or, np.logical_and))
-    sides = []
-    for met in (some, ~every):
-        cells = np.zeros(mesh.cells, dtype=bool)
-        cells[mesh.owner[met]] = True
-        cells[mesh.neighbour[met[: mesh.internal]]] = True
-        sides.append(cells)
-    return np.asarray(sides[0] & sides[1])
+    around = chosen[mesh.owner]
+    around[: mesh.internal] ^= chosen[mesh.neighbour]
+    size = np.diff(mesh.offsets)
+    points, corners = compacted(mesh.points, mesh.corners[np.repeat(around, size)])
+    size = size[around]
+    # VTK wants the number of corners before those of each face
+    return pv.PolyData(points * scale, faces=np.insert(corners, np.cumsum(size) - size, size))
 
 
 def add_balls(plotter: "pv.Plotter", places: Floats, radius: float) -> None:

@@ -8,10 +8,10 @@ import numpy as np
 from pipeline.analytics.tables import length
 from pipeline.data import FIBERS, INLET, OUTLET, FaceMesh, Floats, FluidDomain, Ints
 from pipeline.geometry.box import Box
-from pipeline.geometry.polyhedra import by_size
+from pipeline.geometry.sections import fan, section
 from pipeline.report import drawing
 from pipeline.report.content import MeshContent, ReportContent
-from pipeline.report.drawing import near_the_middle, section
+from pipeline.report.drawing import near_the_middle
 from pipeline.report.mesh_scenes import axis_of_sections
 from pipeline.report.scenes import fibers_of_faces, tubes_of
 
@@ -170,54 +170,7 @@ def _side(name: str, number: int, points: Floats, triangles: Ints, edges: Ints) 
 
 def _section(mesh: FaceMesh, axis: int, around: Box) -> Layer:
     place = near_the_middle(around.lower[axis], around.upper[axis])
-    scale = 1.0 / max(drawing.extent(mesh).size)
-    cut = section(mesh, axis, place, scale)
-    corners, offsets = np.asarray(cut.face_connectivity, np.int64), np.asarray(cut.face_offsets, np.int64)
-    points, triangles, edges, _ = fan(np.asarray(cut.points, np.float64) / scale, corners, offsets)
-    return Layer(
-        _MIDDLE.format("xyz"[axis]), points, triangles, edges, np.zeros(len(triangles), np.int64), drawing.CELLS,
-        shown=False,
-    )  # fmt: skip
-
-
-def fan(points: Floats, corners: Ints, offsets: Ints) -> tuple[Floats, Ints, Ints, Ints]:
-    """Cut polygons into triangles, and keep which of their sides are sides of the polygons.
-
-    Parameters
-    ----------
-    points : (n, 3) array
-    corners, offsets : int arrays
-        Polygon f is ``corners[offsets[f]:offsets[f + 1]]``; `offsets` may begin anywhere in `corners`.
-
-    Returns
-    -------
-    points : (k, 3) array
-        Those of the corners, then the middles of the polygons of more than three.
-    triangles : (t, 3) int array
-    edges : (t,) int array
-        Bit k where the side from corner k to the next is one of the polygon's.
-    polygon : (t,) int array
-
-    Examples
-    --------
-    >>> square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
-    >>> _, triangles, edges, polygon = fan(square, np.array([0, 1, 2, 3]), np.array([0, 4]))
-    >>> triangles.tolist(), edges.tolist(), polygon.tolist()
-    ([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]], [1, 1, 1, 1], [0, 0, 0, 0])
-    """
-    used, local = np.unique(corners[offsets[0] : offsets[-1]], return_inverse=True)
-    vertices, count = [points[used]], len(used)
-    parts: list[tuple[Ints, Ints, Ints]] = [(np.empty((0, 3), np.int64), np.empty(0, np.int64), np.empty(0, np.int64))]
-    for polygon, places in by_size(offsets - offsets[0]):
-        around = local.ravel()[places]
-        sides = around.shape[1]
-        if sides == 3:
-            parts.append((around, _all_edges(around), polygon))
-            continue
-        middle = np.broadcast_to((count + np.arange(len(polygon)))[:, None], around.shape)
-        triangles = np.stack([around, np.roll(around, -1, axis=1), middle], axis=2).reshape(-1, 3)
-        parts.append((triangles, np.full(len(triangles), 0b001), np.repeat(polygon, sides)))
-        vertices.append(vertices[0][around].mean(axis=1))
-        count += len(polygon)
-    triangles, edges, polygon = (np.concatenate(each) for each in zip(*parts, strict=True))
-    return np.concatenate(vertices), triangles, edges, polygon
+    cut = section(mesh.points, mesh.corners, mesh.offsets, mesh.owner, mesh.neighbour, axis, place)
+    # of each triangle the first side is a piece of a cell's outline, the others lead to the cell's middle
+    outline, number = np.full(len(cut.triangles), 0b001), np.zeros(len(cut.triangles), np.int64)
+    return Layer(_MIDDLE.format("xyz"[axis]), cut.points, cut.triangles, outline, number, drawing.CELLS, shown=False)

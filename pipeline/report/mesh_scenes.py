@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pipeline.data import FaceMesh, Floats
-from pipeline.export.vtk import patch_surface, volume_grid
+from pipeline.export.vtk import patch_surface
 from pipeline.geometry.box import Box
 from pipeline.report.drawing import (
     EDGES,
-    TROUBLE,
     Scene,
     add_balls,
     add_outline,
@@ -79,16 +78,7 @@ def section_at_the_worst(plotter: "pv.Plotter", subject: MeshSubject) -> None:
     center = shape.cell_centers[cell]
     # the plane must meet the cell, which a grid's own plane might only touch
     place = float(center[axis]) + 1e-4 * float(np.cbrt(abs(shape.volumes[cell])))
-    add_section(plotter, mesh, axis, place, scale, edges=1.6)
-    chosen = np.zeros(mesh.cells, dtype=bool)
-    chosen[cell] = True
-    origin = [0.0, 0.0, 0.0]
-    origin[axis] = place * scale
-    red = volume_grid(mesh, chosen, scale).slice("xyz"[axis], origin=origin, generate_triangles=False)
-    if red.n_points:
-        # a hair before the section, or both would flicker
-        red.points[:, axis] -= 1e-5
-        plotter.add_mesh(red, color=TROUBLE, opacity=0.75, lighting=False)
+    add_section(plotter, mesh, axis, place, scale, edges=1.6, marked=cell)
     size = np.ptp(mesh.points[mesh.corners[_corners_of(mesh, cell)]], axis=0).max()
     box = extent(mesh)
     half = min(_CELLS_AROUND * float(size), 0.5 * max(box.size))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pipeline.data import FIBERS, FaceMesh, Floats, FluidDomain, Ints, Mat, Surface
-from pipeline.export.vtk import patch_surface, volume_grid
+from pipeline.export.vtk import patch_surface
 from pipeline.geometry.box import Box
 from pipeline.geometry.polyhedra import polygons
 from pipeline.report.drawing import (
@@ -32,6 +32,7 @@ from pipeline.report.drawing import (
     look_aslant,
     near_the_middle,
     scaled,
+    surface_of,
 )
 
 if TYPE_CHECKING:
@@ -145,9 +146,8 @@ def cells_behind_the_cut(plotter: "pv.Plotter", subject: Subject) -> None:
     mesh = subject.mesh
     assert mesh is not None
     behind = mesh.polyhedra().cell_centers[:, 0] > _middle(subject)
-    grid = volume_grid(mesh, behind, MICRO)
     plotter.add_mesh(
-        grid.extract_surface(algorithm="dataset_surface"),
+        surface_of(mesh, behind, MICRO),
         color=CELLS, ambient=0.35, diffuse=0.6, show_edges=True, edge_color=EDGES, line_width=0.8,
     )  # fmt: skip
     _add_fibers(plotter, _mesh_fibers(subject))
