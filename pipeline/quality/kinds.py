@@ -22,7 +22,12 @@ def cells_by_kind(mesh: FaceMesh) -> dict[str, int]:
 def kinds_in_words(mesh: FaceMesh) -> str:
     """Say what the cells are, most frequent first: "980 hexahedra and 44 polyhedra with 7 to 15 faces"."""
     counts = sorted(cells_by_kind(mesh).items(), key=lambda item: -item[1])
-    parts = [f"{count:,} {name}" + (_faces_in_words(mesh) if name == POLYHEDRA else "") for name, count in counts]
+    one = {"tetrahedra": "tetrahedron", "hexahedra": "hexahedron", POLYHEDRA: "polyhedron"}
+    parts = [
+        f"{count:,} {one.get(name, name[:-1]) if count == 1 else name}"
+        + (_faces_in_words(mesh) if name == POLYHEDRA else "")
+        for name, count in counts
+    ]
     return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
 
 

@@ -82,9 +82,9 @@ def section_at_the_worst(plotter: "pv.Plotter", subject: MeshSubject) -> None:
     size = np.ptp(mesh.points[mesh.corners[_corners_of(mesh, cell)]], axis=0).max()
     box = extent(mesh)
     half = min(_CELLS_AROUND * float(size), 0.5 * max(box.size))
-    low, high = scale * (center - half), scale * (center + half)
-    low[axis], high[axis] = scale * box.lower[axis], scale * box.upper[axis]
-    look(plotter, Box(tuple(low.tolist()), tuple(high.tolist())), towards=across, up=up)
+    low, high = np.maximum(center - half, box.lower), np.minimum(center + half, box.upper)
+    low[axis], high[axis] = box.lower[axis], box.upper[axis]
+    look(plotter, Box(tuple((scale * low).tolist()), tuple((scale * high).tolist())), towards=across, up=up)
 
 
 def worst_places(plotter: "pv.Plotter", subject: MeshSubject) -> None:

@@ -38,7 +38,7 @@ def one_of_each(folder: Path) -> FaceMesh:
 def test_each_kind_is_counted_as_what_it_is(tmp_path: Path) -> None:
     mesh = one_of_each(tmp_path)
     assert cells_by_kind(mesh) == {"tetrahedra": 1, "pyramids": 1, "prisms": 1, "hexahedra": 2}
-    assert kinds_in_words(mesh) == "2 hexahedra, 1 tetrahedra, 1 pyramids and 1 prisms"
+    assert kinds_in_words(mesh) == "2 hexahedra, 1 tetrahedron, 1 pyramid and 1 prism"
 
 
 def test_tetrahedra_and_hexahedra_are_told_in_a_word() -> None:
@@ -50,7 +50,7 @@ def test_tetrahedra_and_hexahedra_are_told_in_a_word() -> None:
 def test_a_cube_beside_four_small_ones_is_a_polyhedron() -> None:
     mesh = beside_smaller()
     assert cells_by_kind(mesh) == {"hexahedra": 4, "polyhedra": 1}
-    assert kinds_in_words(mesh) == "4 hexahedra and 1 polyhedra with 9 faces"
+    assert kinds_in_words(mesh) == "4 hexahedra and 1 polyhedron with 9 faces"
 
 
 def beside_smaller() -> FaceMesh:

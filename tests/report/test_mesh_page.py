@@ -8,12 +8,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from pipeline.data import FaceMesh, Patch
+from pipeline.data import FaceMesh, Metric, Patch
 from pipeline.export.openfoam import write_openfoam
 from pipeline.export.read import mesh_files, read_mesh
 from pipeline.export.settings import ExportSettings
 from pipeline.quality import QualitySettings, judge
+from pipeline.report.charts import metric_histogram
 from pipeline.report.content import MeshContent, SourceFile
 from pipeline.report.layers import layers_of_mesh
 from pipeline.report.mesh_page import filled_mesh_page, mesh_sections, subject_of_mesh, write_mesh_page
@@ -169,3 +172,18 @@ def test_the_written_mesh_is_read_back_with_its_files(mesh: FaceMesh, tmp_path: 
     write_openfoam(mesh, tmp_path, AIR)
     np.testing.assert_array_equal(read_mesh(tmp_path).points, mesh.points)
     assert mesh_files(tmp_path) == mesh_files(tmp_path / "constant/polyMesh")
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    values=st.lists(st.floats() | st.floats(0, 100), max_size=30),
+    limit=st.none() | st.floats(0, 100),
+    worst_is=st.sampled_from(["largest", "smallest"]),
+)
+def test_a_histogram_takes_whatever_a_strangers_mesh_measures(
+    values: list[float], limit: float | None, worst_is: str
+) -> None:
+    metric = Metric("skewness", "m2", "faces", 0.0, 1.0, 1.0, 1.0, limit, worst_is, 0, (), "")
+    with np.errstate(all="ignore"):
+        drawn = metric_histogram(metric, np.array(values, float))
+    assert drawn is None or drawn.startswith("<svg")
