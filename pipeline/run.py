@@ -1,15 +1,13 @@
 """The line: one noun in, one noun out per stage, each result kept on disk and reused while it holds."""
 
 import math
-import resource
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from pipeline import store
+from pipeline import machine, store
 from pipeline.analytics import compare, predictor
 from pipeline.analytics.growth import Predictor
 from pipeline.analytics.pressure_models import pressure_model
@@ -414,15 +412,9 @@ def _step(stage: Stage, run: Run, again: bool, tell: Progress) -> Outcome:
     with store.side_folder(folder) as side:
         counts = stage.make(run, side, tell)
         seconds = time.perf_counter() - began
-        cost = {"seconds": seconds, "peak_memory": _peak_memory()}
+        cost = {"seconds": seconds, "peak_memory": machine.peak_memory()}
         store.write_manifest(side, {"stage": stage.name, "key": key, **identity, **cost, "counts": counts})
     return Outcome(stage.name, folder, "made", seconds, counts)
-
-
-def _peak_memory() -> int:
-    """Most memory that this process has held so far [byte]."""
-    # Linux counts in KiB, macOS in bytes
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
 
 
 def _identity(stage: Stage, run: Run) -> dict[str, Any]:

@@ -7,7 +7,6 @@ that is renamed when it is complete, so a killed run leaves finished stages only
 import contextlib
 import dataclasses
 import errno
-import fcntl
 import hashlib
 import importlib.metadata
 import json
@@ -22,6 +21,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from pipeline import machine
 from pipeline.errors import StageError
 from pipeline.geometry.box import Box
 
@@ -215,7 +215,7 @@ def locked(folder: Path) -> Iterator[None]:
     with lock, disk_trouble_explained(folder):
         try:
             # the system lets go of it when the process ends, however it ends
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            machine.lock(lock)
         except BlockingIOError:
             raise StageError(f"another run is writing {folder}; wait for it, or choose another --out") from None
         yield

@@ -1,15 +1,11 @@
 """One run of OpenFOAM: started or continued, watched, stopped when the pressure drop has settled, read back."""
 
 import contextlib
-import ctypes
 import hashlib
 import math
-import os
 import re
 import shutil
-import signal
 import subprocess
-import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from pipeline import machine
 from pipeline.data import Floats, Flow, Solution
 from pipeline.errors import StageError
 from pipeline.progress import Progress, silent
@@ -31,7 +28,7 @@ LOST_MASS = 0.5
 """A run diverges where this share of the air is lost or found between inlet and outlet."""
 _POLL = 0.3  # seconds between two looks at a run
 _SAVES = 100  # iterations between two states that a killed run continues from
-_PR_SET_PDEATHSIG = 1
+_PATIENCE = 10.0  # seconds that a solver has to end by itself
 _KEY, _SECONDS, _STOP = "fibertwin.key", "fibertwin.seconds", "stop"
 
 
@@ -171,12 +168,6 @@ def _call(command: list[str], work: Path, log: str) -> None:
         raise StageError(f"{command[0]} failed (exit code {done.returncode}):\n{read_back.tail(work / log)}")
 
 
-def _end_with_parent() -> None:
-    """Let Linux end the solver when this process is killed, or it would go on writing into the next run's folder."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
-
-
 @contextlib.contextmanager
 def _running(command: list[str], work: Path, log_name: str) -> Iterator["subprocess.Popen[bytes]"]:
     """Run the solver in a process group of its own, which ends with the block whatever happens."""
@@ -188,20 +179,13 @@ def _running(command: list[str], work: Path, log_name: str) -> Iterator["subproc
             stdout=log,
             stderr=subprocess.STDOUT,
             stdin=subprocess.DEVNULL,
-            start_new_session=True,
-            preexec_fn=_end_with_parent,
+            # or a killed run's solver would go on writing into the next run's folder
+            **machine.apart(),
         )
     try:
         yield solver
     finally:
-        if solver.poll() is None:
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(solver.pid, signal.SIGTERM)
-            try:
-                solver.wait(10)
-            except subprocess.TimeoutExpired:
-                os.killpg(solver.pid, signal.SIGKILL)
-                solver.wait()
+        machine.end_group(solver, _PATIENCE)
 
 
 def _watch(
