@@ -1,5 +1,6 @@
 """The commands of `fibertwin`."""
 
+import importlib.metadata
 import json
 import sys
 from pathlib import Path
@@ -15,7 +16,10 @@ from pipeline.errors import FibertwinError
 app = App(
     name="fibertwin",
     help="From a fiber mat to a CFD case one can trust: one TOML file in, a checked OpenFOAM case out.",
+    version=lambda: importlib.metadata.version("fibertwin"),
     version_flags=["--version"],
+    # that a switch is off and a list empty goes without saying
+    default_parameter=Parameter(show_default=lambda value: None if value in (False, ()) else value),
 )
 app.register_install_completion_command()
 out = Console()

@@ -3,13 +3,21 @@
 import importlib.metadata
 import os
 import platform
+import re
 import shutil
 import subprocess
+import sys
 from dataclasses import dataclass
 
 import psutil
 
 _OPENFOAM = ("checkMesh", "simpleFoam")
+_SPHERE = """
+import pyvista
+plotter = pyvista.Plotter(off_screen=True, window_size=[60, 60])
+plotter.add_mesh(pyvista.Sphere())
+assert plotter.screenshot(None, return_img=True).std() > 0
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,14 +32,14 @@ class Finding:
 
 
 def examine() -> list[Finding]:
-    """Look at the interpreter, the libraries, OpenFOAM, memory and cores."""
+    """Look at the interpreter, the libraries, OpenFOAM, MPI, OpenGL, memory and cores."""
     findings = [Finding("Python", platform.python_version(), True, True)]
     for requirement in importlib.metadata.requires("fibertwin") or []:
         if "extra ==" in requirement:
             continue
         name = requirement.split(">")[0].split(";")[0].strip()
         findings.append(_library(name))
-    findings.append(_openfoam())
+    findings += [_openfoam(), _mpi(), _opengl()]
     memory = psutil.virtual_memory()
     enough = memory.available >= 4 * 2**30
     findings.append(
@@ -68,5 +76,35 @@ def _openfoam() -> Finding:
     answer = subprocess.run(
         ["simpleFoam", "-help"], capture_output=True, text=True, env=environment, check=False, timeout=60
     )
-    version = next((line.split(":", 1)[1].strip() for line in answer.stdout.splitlines() if "Using" in line), "found")
-    return Finding("OpenFOAM", version, True, False)
+    # "Using: OpenFOAM-v2312 (2312) - visit www.openfoam.com", or with a name of its own before the parenthesis
+    version = re.search(r"Using:?\s+OpenFOAM\S*\s+\(([^)]+)\)", answer.stdout)
+    return Finding("OpenFOAM", version[1] if version else "found", True, False)
+
+
+def _mpi() -> Finding:
+    program = shutil.which("mpirun")
+    if program is None:
+        return Finding(
+            "MPI", "mpirun not on the PATH", False, False,
+            "only solve.cores above 1 needs it; on Debian: apt-get install openmpi-bin",
+        )  # fmt: skip
+    return Finding("MPI", program, True, False)
+
+
+def _opengl() -> Finding:
+    from pipeline.report.render import rendering_environment
+
+    # a process of its own: VTK ends the one that asks in vain
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", _SPHERE],
+        env=rendering_environment(),
+        capture_output=True,
+        check=False,
+        timeout=120,
+    )
+    if done.returncode:
+        return Finding(
+            "OpenGL", "VTK draws nothing", False, False,
+            "pages have no pictures without it; on Debian: apt-get install libegl1 libgl1-mesa-dri",
+        )  # fmt: skip
+    return Finding("OpenGL", "draws", True, False)
