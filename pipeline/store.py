@@ -187,8 +187,10 @@ def disk_trouble_explained(place: Path) -> Iterator[None]:
     except OSError as problem:
         if problem.errno not in _DISK_TROUBLE:
             raise
+        blocked = problem.errno in (errno.EEXIST, errno.ENOTDIR)
+        reason = "a file stands where a folder should" if blocked else os.strerror(problem.errno or 0).lower()
         raise StageError(
-            f"cannot write {problem.filename or place}: {os.strerror(problem.errno or 0).lower()}; "
+            f"cannot write {problem.filename or place}: {reason}; "
             "nothing half-written was kept; free space, or choose another place"
         ) from problem
 
