@@ -1,5 +1,7 @@
 """What systems do differently. Linux is tried; of Windows only that nothing stops before it is asked for."""
 
+import os
+import shutil
 import subprocess
 import sys
 import time
@@ -10,6 +12,7 @@ import psutil
 import pytest
 
 from pipeline import machine
+from pipeline.machine_code import make_room
 
 _EVERYTHING = """
 import importlib, pkgutil, sys
@@ -78,3 +81,21 @@ def test_a_group_ends_with_all_that_it_started() -> None:
     assert not any(child.is_running() and child.status() != psutil.STATUS_ZOMBIE for child in children)
     # a second time does no harm
     machine.end_group(program, 5.0)
+
+
+def test_numba_gets_a_private_folder_where_nothing_else_can_be_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "not/there"))
+    make_room()
+    assert "NUMBA_CACHE_DIR" not in os.environ
+    # root may write everywhere
+    monkeypatch.setattr(os, "access", lambda path, mode: False)
+    make_room()
+    folder = Path(os.environ["NUMBA_CACHE_DIR"])
+    assert folder.stat().st_mode & 0o777 == 0o700
+    shutil.rmtree(folder)
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "chosen")
+    make_room()
+    assert os.environ["NUMBA_CACHE_DIR"] == "chosen"
