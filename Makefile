@@ -44,9 +44,9 @@ bench: setup  ## Measure what the documentation quotes
 verify: setup  ## Solve arrays and mats, and write what docs/verification.md shows (half an hour; needs OpenFOAM)
 	$(BIN)/python docs/verify.py runs/verification
 
-docs: setup  ## Build the site of docs/ into build/site
+docs: setup  ## Build the site of docs/ into build/site, with the notebook run and the gallery drawn anew
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[docs]'
-	$(BIN)/mkdocs build --strict --site-dir build/site
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --site-dir build/site
 
 clean:  ## Remove what can be made again (runs/ is kept)
 	rm -rf $(VENV) .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks .import_linter_cache dist build

@@ -18,6 +18,8 @@ import sys
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from pipeline.machine_code import make_room
+
 if TYPE_CHECKING:
     from pipeline.analytics import compare as compare
     from pipeline.analytics import predict as predict
@@ -75,3 +77,5 @@ def __dir__() -> list[str]:
 
 
 sys.modules[__name__].__class__ = _Package
+
+make_room()

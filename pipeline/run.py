@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from pipeline import store
+from pipeline import machine, store
 from pipeline.analytics import compare, predictor
 from pipeline.analytics.growth import Predictor
 from pipeline.analytics.pressure_models import pressure_model
@@ -19,7 +19,6 @@ from pipeline.errors import StageError
 from pipeline.export import FiberSlip, export, fiber_radius
 from pipeline.export.openfoam.dictionaries import SOLVER
 from pipeline.geometry.tets import volume_between
-from pipeline.machine import peak_memory
 from pipeline.mat import ArraySettings, BoxSettings, FileSettings, LayeredSettings, MatMeasures, generate, measure
 from pipeline.mat.exchange import write_fibers
 from pipeline.mat.tally import report_stop
@@ -108,9 +107,14 @@ class Run:
         return store.load(FluidDomain, self.folder / "enclosure" / "domain.npz")
 
     @property
+    def mesh_file(self) -> Path:
+        """Where the air in cells is kept."""
+        return self.folder / "tetmesh" / "mesh.npz"
+
+    @property
     def mesh(self) -> FaceMesh:
         """The air in cells."""
-        return store.load(FaceMesh, self.folder / "tetmesh" / "mesh.npz")
+        return store.load(FaceMesh, self.mesh_file)
 
     @property
     def quality(self) -> QualityReport:
@@ -418,7 +422,7 @@ def _step(stage: Stage, run: Run, again: bool, tell: Progress) -> Outcome:
     with store.side_folder(folder) as side:
         counts = stage.make(run, side, tell)
         seconds = time.perf_counter() - began
-        cost = {"seconds": seconds, "peak_memory": peak_memory()}
+        cost = {"seconds": seconds, "peak_memory": machine.peak_memory()}
         store.write_manifest(side, {"stage": stage.name, "key": key, **identity, **cost, "counts": counts})
     return Outcome(stage.name, folder, "made", seconds, counts)
 

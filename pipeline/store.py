@@ -7,7 +7,6 @@ that is renamed when it is complete, so a killed run leaves finished stages only
 import contextlib
 import dataclasses
 import errno
-import fcntl
 import hashlib
 import importlib.metadata
 import json
@@ -22,15 +21,19 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from pipeline import machine
 from pipeline.errors import StageError
 from pipeline.geometry.box import Box
 
 T = TypeVar("T")
 MANIFEST = "manifest.json"
 _PACKAGE = Path(__file__).parent
-_SOURCES = (".py", ".jinja", ".css")
+_SOURCES = (".py", ".jinja", ".css", ".js")
 # What no change of the case can mend, only the user: the disk and its permissions.
-_DISK_TROUBLE = {errno.ENOSPC, errno.EACCES, errno.EPERM, errno.EROFS, errno.EDQUOT, errno.ENOTDIR, errno.EFBIG}
+_DISK_TROUBLE = {
+    errno.ENOSPC, errno.EACCES, errno.EPERM, errno.EROFS, errno.EDQUOT, errno.ENOTDIR, errno.EFBIG, errno.EEXIST,
+    errno.EISDIR, errno.ENAMETOOLONG,
+}  # fmt: skip
 
 
 def digest(content: object) -> str:
@@ -197,9 +200,11 @@ def disk_trouble_explained(place: Path) -> Iterator[None]:
     except OSError as problem:
         if problem.errno not in _DISK_TROUBLE:
             raise
+        blocked = problem.errno in (errno.EEXIST, errno.ENOTDIR)
+        reason = "a file stands where a folder should" if blocked else os.strerror(problem.errno or 0).lower()
         raise StageError(
-            f"cannot write {problem.filename or place}: {os.strerror(problem.errno or 0).lower()}; "
-            "nothing half-written was kept; free space, or choose another folder with --out"
+            f"cannot write {problem.filename or place}: {reason}; "
+            "nothing half-written was kept; free space, or choose another place"
         ) from problem
 
 
@@ -225,7 +230,7 @@ def locked(folder: Path) -> Iterator[None]:
     with lock, disk_trouble_explained(folder):
         try:
             # the system lets go of it when the process ends, however it ends
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            machine.lock(lock)
         except BlockingIOError:
             raise StageError(f"another run is writing {folder}; wait for it, or choose another --out") from None
         yield

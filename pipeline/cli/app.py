@@ -1,5 +1,6 @@
 """The commands of `fibertwin`."""
 
+import importlib.metadata
 import json
 import sys
 from pathlib import Path
@@ -15,7 +16,10 @@ from pipeline.errors import FibertwinError
 app = App(
     name="fibertwin",
     help="From a fiber mat to a CFD case one can trust: one TOML file in, a checked OpenFOAM case out.",
+    version=lambda: importlib.metadata.version("fibertwin"),
     version_flags=["--version"],
+    # that a switch is off and a list empty goes without saying
+    default_parameter=Parameter(show_default=lambda value: None if value in (False, ()) else value),
 )
 app.register_install_completion_command()
 out = Console()
@@ -99,6 +103,8 @@ def quality(
     mesh: Path,
     *,
     limits: Path | None = None,
+    report: Path | None = None,
+    scene: Path | None = None,
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
     quiet: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
@@ -111,6 +117,10 @@ def quality(
         .su2, .mesh and what else meshio reads), or the folder of a run.
     limits
         A case file whose limits (``[quality]``) are held against the mesh, instead of those of checkMesh.
+    report
+        Write a page of the mesh into this file (.html): verdict, table, histograms, pictures, worst cells, provenance.
+    scene
+        Write the mesh into this file (.html) to turn it in a browser, offline too.
     as_json
         Print JSON with SI numbers, with the worst cells and where they are, instead of a table.
     quiet
@@ -118,7 +128,7 @@ def quality(
     """
     from pipeline.cli.judging import judge_mesh
 
-    raise SystemExit(judge_mesh(mesh, found(limits) if limits else None, as_json, quiet))
+    raise SystemExit(judge_mesh(mesh, found(limits) if limits else None, report, scene, as_json, quiet))
 
 
 @app.command
@@ -278,7 +288,7 @@ def report(run: Path, *, quiet: Annotated[bool, Parameter(negative="")] = False)
 
 
 @app.command
-def view(run: Path, *, scene: str | None = None, screenshot: Path | None = None) -> None:
+def view(run: Path, *, scene: str | None = None, screenshot: Path | None = None, html: Path | None = None) -> None:
     """Look at a run's geometry and mesh in a window; without a screen, draw every view into RUN/pictures.
 
     Parameters
@@ -289,10 +299,15 @@ def view(run: Path, *, scene: str | None = None, screenshot: Path | None = None)
         One view: mat-top, mat-side, duct, cut, close-up, cells, mesh-fibers or worst.
     screenshot
         Draw the view (duct unless another is named) into this file, png or jpg, instead of opening a window.
+    html
+        Write the geometry and the mesh into this file (.html) to turn them in a browser, offline too, instead.
     """
-    from pipeline.cli.viewing import view_run
+    from pipeline.cli.viewing import view_run, write_scene_of_run
 
-    view_run(run, scene, screenshot)
+    if html is not None:
+        write_scene_of_run(run, html)
+    if html is None or screenshot is not None:
+        view_run(run, scene, screenshot)
 
 
 @app.command

@@ -3,8 +3,10 @@
 import importlib.metadata
 import os
 import platform
+import re
 import shutil
 import subprocess
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +17,13 @@ from pipeline.openfoam.environment import INSTALL, environment
 from pipeline.tetmesh.snappy.running import PARALLEL, PROGRAMS
 
 _SOLVER = ("checkMesh", "simpleFoam")
+_INSTALL_MPI = "on Debian: apt-get install openmpi-bin"
+_SPHERE = """
+import pyvista
+plotter = pyvista.Plotter(off_screen=True, window_size=[60, 60])
+plotter.add_mesh(pyvista.Sphere())
+assert plotter.screenshot(None, return_img=True).std() > 0
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +38,7 @@ class Finding:
 
 
 def examine() -> list[Finding]:
-    """Look at the interpreter, the libraries, OpenFOAM, memory and cores."""
+    """Look at the interpreter, the libraries, OpenFOAM, MPI, OpenGL, memory and cores."""
     findings = [Finding("Python", platform.python_version(), True, True)]
     for requirement in importlib.metadata.requires("fibertwin") or []:
         if "extra ==" in requirement:
@@ -38,8 +47,9 @@ def examine() -> list[Finding]:
         findings.append(_library(name))
     findings += [
         _openfoam(),
-        _programs("snappyHexMesh", (*PROGRAMS, *PARALLEL), 'only tetmesh.engine = "snappy" needs it'),
-        _programs("MPI", ("mpirun",), "only solve.cores and tetmesh.cores above 1 need it"),
+        _programs("snappyHexMesh", (*PROGRAMS, *PARALLEL), 'only tetmesh.engine = "snappy" needs it', INSTALL),
+        _programs("MPI", ("mpirun",), "only solve.cores and snappy's tetmesh.cores above 1 need it", _INSTALL_MPI),
+        _opengl(),
     ]
     memory = psutil.virtual_memory()
     enough = memory.available >= 4 * 2**30
@@ -64,18 +74,38 @@ def _library(name: str) -> Finding:
 
 
 def _openfoam() -> Finding:
-    found = _programs("OpenFOAM", _SOLVER, "only `solve` needs it")
+    found = _programs("OpenFOAM", _SOLVER, "only `solve` needs it", INSTALL)
     if not found.fine:
         return found
     answer = subprocess.run(
         ["simpleFoam", "-help"], capture_output=True, text=True, env=environment(Path.cwd()), check=False, timeout=60
     )
-    version = next((line.split(":", 1)[1].strip() for line in answer.stdout.splitlines() if "Using" in line), "found")
-    return Finding("OpenFOAM", version, True, False)
+    # "Using: OpenFOAM-v2312 (2312) - visit www.openfoam.com", or with a name of its own before the parenthesis
+    version = re.search(r"Using:?\s+OpenFOAM\S*\s+\(([^)]+)\)", answer.stdout)
+    return Finding("OpenFOAM", version[1] if version else "found", True, False)
 
 
-def _programs(name: str, programs: Sequence[str], purpose: str) -> Finding:
+def _programs(name: str, programs: Sequence[str], purpose: str, advice: str) -> Finding:
     missing = [program for program in programs if shutil.which(program) is None]
     if missing:
-        return Finding(name, f"{', '.join(missing)} not on the PATH", False, False, f"{purpose}; {INSTALL}")
+        return Finding(name, f"{', '.join(missing)} not on the PATH", False, False, f"{purpose}; {advice}")
     return Finding(name, "found", True, False)
+
+
+def _opengl() -> Finding:
+    from pipeline.report.render import rendering_environment
+
+    # a process of its own: VTK ends the one that asks in vain
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", _SPHERE],
+        env=rendering_environment(),
+        capture_output=True,
+        check=False,
+        timeout=120,
+    )
+    if done.returncode:
+        return Finding(
+            "OpenGL", "VTK draws nothing", False, False,
+            "pages have no pictures without it; on Debian: apt-get install libegl1 libgl1-mesa-dri",
+        )  # fmt: skip
+    return Finding("OpenGL", "draws", True, False)

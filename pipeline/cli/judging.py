@@ -12,35 +12,74 @@ from pipeline.cli.listen import listening
 from pipeline.cli.printable import printable
 from pipeline.cli.tables import quality_table
 from pipeline.data import FaceMesh, QualityReport
-from pipeline.export import read_mesh
+from pipeline.export.read import mesh_files, read_mesh
+from pipeline.progress import Progress
 from pipeline.quality import judge
 from pipeline.quality.settings import QualitySettings
 from pipeline.run import CASE, Run
+from pipeline.store import disk_trouble_explained, file_digest
 
 FELL_SHORT = 1
 """Exit code where a limit does not hold."""
 
 
-def judge_mesh(path: Path, limits: Path | None, as_json: bool, quiet: bool) -> int:
+@dataclasses.dataclass(frozen=True, slots=True)
+class _Source:
+    # a run of ours keeps its mesh, and its case has limits of its own
+    mesh: FaceMesh
+    files: list[Path]
+    limits: QualitySettings
+    limits_of: str
+
+
+def judge_mesh(
+    path: Path, limits: Path | None, page: Path | None, scene: Path | None, as_json: bool, quiet: bool
+) -> int:
     """Print what a mesh is like and give the exit code: 0 where every limit holds."""
     settings = read_case(limits).quality if limits else None
     with listening(Console(stderr=True), quiet or as_json) as tell:
         tell(f"reading {path}")
-        mesh, of_run = _mesh(path)
-        report = judge(mesh, settings or of_run, tell)
+        source = _source(path)
+        if limits is not None and settings is not None:
+            source = dataclasses.replace(source, limits=settings, limits_of=f"The limits are those of {limits}")
+        report = judge(source.mesh, source.limits, tell)
+        if page or scene:
+            _write_pages(path, source, report, page, scene, tell)
     if as_json:
         sys.stdout.write(json.dumps(dataclasses.asdict(report), indent=2, allow_nan=False) + "\n")
     elif not quiet:
         _show(report)
+        for what, file in (("read it:", page), ("turn it:", scene)):
+            if file is not None:
+                Console().print(what, file, markup=False, highlight=False, soft_wrap=True)
     return 0 if report.passed else FELL_SHORT
 
 
-def _mesh(path: Path) -> tuple[FaceMesh, QualitySettings | None]:
-    # a run of ours keeps its mesh, and its case has limits of its own
+def _source(path: Path) -> _Source:
     if (path / CASE).is_file():
         run = Run.opened(path)
-        return run.mesh, run.case.quality
-    return read_mesh(path), None
+        return _Source(run.mesh, [run.mesh_file], run.case.quality, f"The limits are those of {path / CASE}")
+    return _Source(read_mesh(path), mesh_files(path), QualitySettings(), "The limits are those of checkMesh")
+
+
+def _write_pages(
+    path: Path, source: _Source, report: QualityReport, page: Path | None, scene: Path | None, tell: Progress
+) -> None:
+    # pages take a second to load what they need, for nobody who wants a table only
+    from pipeline.report import MeshContent, SourceFile
+    from pipeline.report.layers import layers_of_mesh
+    from pipeline.report.mesh_page import write_mesh_page
+    from pipeline.report.scene_file import write_scene
+
+    files = tuple(SourceFile(str(file), file.stat().st_size, file_digest(file)) for file in source.files)
+    content = MeshContent(path, source.mesh, report, source.limits, source.limits_of, files)
+    if page is not None:
+        with disk_trouble_explained(page):
+            write_mesh_page(content, page, tell)
+    if scene is not None:
+        tell("page: scene")
+        with disk_trouble_explained(scene):
+            write_scene(layers_of_mesh(content), str(path), scene, flow=False)
 
 
 def _show(report: QualityReport) -> None:

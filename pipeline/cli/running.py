@@ -54,4 +54,6 @@ def _next_steps(folder: Path) -> list[str]:
         steps.append(f"  solve it:   cd {openfoam} && ./Allrun")
     if vtk.is_dir():
         steps.append(f"  look at it: paraview {next(vtk.glob('*.vtm'), vtk)}")
+    if (folder / "mat").is_dir():
+        steps.append(f"  turn it:    fibertwin view {folder}   (or --html scene.html, for any browser)")
     return steps

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable
 
+from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
@@ -73,7 +74,7 @@ def _count(name: str, value: object) -> str:
     return f"{label} {' '.join(map(str, value))}" if isinstance(value, list | tuple) else f"{label} {value}"
 
 
-def result_tables(run: Run, stages: Iterable[str]) -> list[Table]:
+def result_tables(run: Run, stages: Iterable[str]) -> list[Group]:
     """Make the quality report and the comparison into tables, where the run has them."""
     tables = []
     if "quality" in stages:
@@ -85,14 +86,14 @@ def result_tables(run: Run, stages: Iterable[str]) -> list[Table]:
     return tables
 
 
-def quality_table(report: QualityReport, opening: str = "") -> Table:
+def quality_table(report: QualityReport, opening: str = "") -> Group:
     """Show a mesh's quality: one line per metric. What each is measured on stands in the JSON: a terminal is narrow."""
     return plain_table(
         opening + summary(report), (HEADER[0], *HEADER[2:]), [(name, *numbers) for name, _, *numbers in rows(report)]
     )
 
 
-def solution_table(solution: Solution) -> Table:
+def solution_table(solution: Solution) -> Group:
     """Lay a solution out in the units people use."""
     rows = [
         ("pressure drop", f"{solution.pressure_drop:.4g} Pa"),
@@ -127,24 +128,23 @@ _NOTES = "outside its range"
 """Column whose texts are too long for a terminal: they become notes below the table."""
 
 
-def plain_table(title: str, columns: Iterable[str], lines: Iterable[tuple[str, ...]]) -> Table:
+def plain_table(title: str, columns: Iterable[str], lines: Iterable[tuple[str, ...]]) -> Group:
     """Make a table whose first column is text and whose others are numbers; long notes go below it."""
     heads, table_rows = list(columns), list(lines)
     notes: list[str] = []
     if heads[-1] == _NOTES:
         heads[-1] = "notes"
         table_rows = [(*cells, _numbered(note, notes)) for *cells, note in table_rows]
-    table = Table(box=None, padding=(0, 1, 0, 0), title=Text(f"\n{title}"), title_justify="left", title_style="bold")
+    table = Table(box=None, padding=(0, 1, 0, 0))
     # as Text: rich would read a unit in brackets as its markup and drop it
     table.add_column(Text(heads[0]))
-    if notes:
-        table.caption = Text("\n".join(f"{number} {note}" for number, note in enumerate(notes, 1)))
-        table.caption_justify = "left"
     for column in heads[1:]:
         table.add_column(Text(column), justify="right")
     for cells in table_rows:
         table.add_row(*map(Text, cells))
-    return table
+    # as lines of their own: a table's title and caption are no wider than the table
+    below = [Text(f"{number} {note}") for number, note in enumerate(notes, 1)]
+    return Group(Text(f"\n{title}", style="bold"), table, *below)
 
 
 def _numbered(text: str, notes: list[str]) -> str:

@@ -7,8 +7,9 @@ from rich.console import Console
 from pipeline.cli.listen import listening
 from pipeline.errors import CaseError, StageError
 from pipeline.report import subject_of
+from pipeline.report.painter import possible
 from pipeline.report.render import Painting, screenless
-from pipeline.report.scenes import SCENES, Subject, possible, show
+from pipeline.report.scenes import SCENES, Subject, show
 from pipeline.run import Run, content_of, report
 from pipeline.store import disk_trouble_explained
 
@@ -16,6 +17,7 @@ PICTURES = "pictures"
 """Folder of a run that pictures go into when nobody names a file."""
 _KINDS = {".png": "png", ".jpg": "jpg", ".jpeg": "jpg"}
 _FIRST_CHOICE = "duct"
+_NOTHING = "{} has no mat yet, so there is nothing to see; fibertwin run makes one"
 
 
 def write_page(folder: Path, quiet: bool) -> None:
@@ -31,7 +33,7 @@ def view_run(folder: Path, scene: str | None, screenshot: Path | None) -> None:
     """Open a window on a run, or draw pictures where a file is asked for or there is no screen."""
     subject = subject_of(content_of(Run.opened(folder)))
     if subject is None:
-        raise StageError(f"{folder} has no mat yet, so there is nothing to see; fibertwin run makes one")
+        raise StageError(_NOTHING.format(folder))
     there = possible(subject)
     if scene is not None:
         _check_scene(scene, there, folder)
@@ -45,7 +47,24 @@ def view_run(folder: Path, scene: str | None, screenshot: Path | None) -> None:
         names = (scene,) if scene else there
         _draw(subject, {name: folder / PICTURES / f"{name}.png" for name in names}, "png")
     else:
-        show(subject, scene, f"fibertwin: {folder}")
+        show(subject, there, scene, f"fibertwin: {folder}")
+
+
+def write_scene_of_run(folder: Path, path: Path) -> None:
+    """Write what a run has as a scene for a browser."""
+    from pipeline.report.layers import layers_of_run
+    from pipeline.report.scene_file import write_scene
+
+    out = Console()
+    with listening(out, False) as tell:
+        content = content_of(Run.opened(folder))
+        if content.mat is None:
+            raise StageError(_NOTHING.format(folder))
+        tell("collecting surfaces")
+        with disk_trouble_explained(path):
+            write_scene(layers_of_run(content), content.name, path)
+    size = path.stat().st_size / 1e6
+    out.print(f"{path} ({size:.1f} MB; open it in a browser)", markup=False, highlight=False, soft_wrap=True)
 
 
 def _check_scene(scene: str, there: tuple[str, ...], folder: Path) -> None:

@@ -1,17 +1,13 @@
 """Meshes that are not ours: an OpenFOAM case, Fluent, or any file that meshio reads."""
 
-import contextlib
-import resource
-from collections.abc import Iterator
 from pathlib import Path
-
-import psutil
 
 from pipeline.data import FaceMesh
 from pipeline.errors import StageError
 from pipeline.export.read_exchange import read_exchange
 from pipeline.export.read_fluent import read_fluent
-from pipeline.openfoam.read import LARGEST_FILE, read_openfoam
+from pipeline.machine import memory_bounded
+from pipeline.openfoam.read import FILES, LARGEST_FILE, mesh_folder, read_openfoam
 
 
 def read_mesh(path: Path) -> FaceMesh:
@@ -34,24 +30,17 @@ def read_mesh(path: Path) -> FaceMesh:
         If the path is no mesh, or the mesh is damaged.
     """
     try:
-        with _memory_bounded():
+        # a few bytes of a compressed file can ask for all of the machine's memory
+        with memory_bounded():
             return _read(path)
     except MemoryError:
         raise StageError(f"cannot read {path}: it asks for more memory than this machine has free") from None
 
 
-@contextlib.contextmanager
-def _memory_bounded() -> Iterator[None]:
-    """End what would take more than the machine's free memory: a few bytes of a compressed file can ask for that."""
-    _, hard = before = resource.getrlimit(resource.RLIMIT_AS)
-    bound = psutil.Process().memory_info().vms + psutil.virtual_memory().available
-    if before[0] != resource.RLIM_INFINITY:
-        bound = min(bound, before[0])
-    resource.setrlimit(resource.RLIMIT_AS, (bound, hard))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_AS, before)
+def mesh_files(path: Path) -> list[Path]:
+    """Give the files that `read_mesh` reads a mesh from."""
+    place = path.parent if path.suffix == ".foam" else path
+    return [mesh_folder(place) / name for name in FILES] if place.is_dir() else [place]
 
 
 def _read(path: Path) -> FaceMesh:

@@ -12,6 +12,7 @@ import numpy as np
 
 from pipeline.data import FaceMesh, Floats, Ints, Patch
 from pipeline.errors import StageError
+from pipeline.export.read_vtu import read_vtu
 from pipeline.geometry.cells import KINDS, cell_faces, polygons_of, rows_of
 
 UNNAMED = "boundary"
@@ -73,6 +74,7 @@ def read_exchange(path: Path) -> FaceMesh:
 
 def _load(path: Path) -> Any:
     import meshio
+    from meshio._exceptions import CorruptionError
     from meshio._helpers import extension_to_filetypes, reader_map
 
     kinds = [kind for kind in extension_to_filetypes.get(path.suffix.lower(), []) if kind in _READABLE]
@@ -84,8 +86,8 @@ def _load(path: Path) -> Any:
         try:
             # meshio prints a line for each line that it cannot read: what it makes of the file is what counts
             with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-                return reader_map[kind](str(path))
-        except (meshio.ReadError, *_DAMAGE) as problem:
+                return read_vtu(path) if kind == "vtu" else reader_map[kind](str(path))
+        except (meshio.ReadError, CorruptionError, *_DAMAGE) as problem:
             problems.append(f"as {kind}: {type(problem).__name__} {problem}".strip())
     raise StageError(f"cannot read {path}: " + "; ".join(problems))
 

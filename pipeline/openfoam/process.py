@@ -1,18 +1,15 @@
 """Programs of OpenFOAM as child processes: they end when this process ends, and their logs tell what went wrong."""
 
 import contextlib
-import ctypes
-import os
-import signal
 import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from pipeline import machine
 from pipeline.errors import StageError
 from pipeline.openfoam.environment import environment
 
-_PR_SET_PDEATHSIG = 1
+_PATIENCE = 10.0  # seconds that a program has to end by itself
 
 
 @contextlib.contextmanager
@@ -38,26 +35,13 @@ def running(command: list[str], case: Path, log: Path) -> Iterator["subprocess.P
             stdout=file,
             stderr=subprocess.STDOUT,
             stdin=subprocess.DEVNULL,
-            start_new_session=True,
-            preexec_fn=_end_with_parent,
+            # or a killed run's program would go on writing into the next run's folder
+            **machine.apart(),
         )
     try:
         yield child
     finally:
-        if child.poll() is None:
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(child.pid, signal.SIGTERM)
-            try:
-                child.wait(10)
-            except subprocess.TimeoutExpired:
-                os.killpg(child.pid, signal.SIGKILL)
-                child.wait()
-
-
-def _end_with_parent() -> None:
-    """Let Linux end the program when this process is killed, or it would go on writing into the next run's folder."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
+        machine.end_group(child, _PATIENCE)
 
 
 def call(command: list[str], case: Path) -> None:

@@ -16,6 +16,15 @@ LARGEST_FILE = 20_000_000_000
 """A file of more bytes is refused before it is opened: its mesh would not fit into memory."""
 
 
+FILES = ("points", "faces", "owner", "neighbour", "boundary")
+"""What a mesh consists of."""
+
+
+def mesh_folder(case: Path) -> Path:
+    """Give the folder of a mesh's files: the case's `polyMesh`, or the folder itself if it is one."""
+    return case if (case / "points").is_file() else case / "constant" / "polyMesh"
+
+
 def read_openfoam(case: Path) -> FaceMesh:
     """Read the mesh of an OpenFOAM case.
 
@@ -33,7 +42,7 @@ def read_openfoam(case: Path) -> FaceMesh:
     StageError
         If there is no mesh, or a file is damaged or of a kind that is not read (compressed, 64-bit labels are).
     """
-    folder = case if (case / "points").is_file() else case / "constant" / "polyMesh"
+    folder = mesh_folder(case)
     try:
         points = _List(folder / "points").floats(3)
         corners, offsets = _read_faces(_List(folder / "faces"))

@@ -170,9 +170,10 @@ def _sentence(metric: Metric) -> str:
     if metric.limit == 0:
         side = "not above"
     unit = "" if metric.unit == "1" else f" {metric.unit}"
+    where = metric.where if metric.over_limit > 1 else metric.where.removesuffix("s")
     x, y, z = metric.worst[0][2]
     return (
-        f"{metric.name.replace('_', ' ')}: {metric.over_limit} {metric.where} {side} {metric.limit:g}{unit}, "
+        f"{metric.name.replace('_', ' ')}: {metric.over_limit:,} {where} {side} {metric.limit:g}{unit}, "
         f"worst {worst:.4g} at ({x:.4g}, {y:.4g}, {z:.4g}) m"
     )
 

@@ -18,7 +18,7 @@ def rows(report: QualityReport) -> list[tuple[str, ...]]:
 
 
 def _row(metric: Metric) -> tuple[str, ...]:
-    unit, per_si = _shown_unit(metric)
+    unit, per_si = shown_unit(metric)
     name = metric.name.replace("_", " ") + ("" if unit == "1" else f" [{unit}]")
     sign = "<" if metric.worst_is == "largest" else ">"
     limit = "" if metric.limit is None else f"{sign} {metric.limit:g}"
@@ -26,14 +26,21 @@ def _row(metric: Metric) -> tuple[str, ...]:
     return (name, metric.where, *numbers, limit, f"{metric.over_limit:,}" if metric.limit is not None else "")
 
 
-def _shown_unit(metric: Metric) -> tuple[str, float]:
-    """Give the unit that suits cells of this size, and how many of it make the metric's own."""
+def shown_unit(metric: Metric) -> tuple[str, float]:
+    """Give the unit that suits cells of this size, and how many of it make the metric's own.
+
+    Examples
+    --------
+    >>> shown_unit(Metric("volume", "m3", "cells", 1e-9, 4e-9, 8e-9, 9e-9, 0.0, "smallest", 0, (), ""))
+    ('mm3', 1000000000.0)
+    """
     power = {"m3": 3, "m2": 2}.get(metric.unit)
     if power is None:
         return {"degree": "deg"}.get(metric.unit, metric.unit), 1.0
+    # cells of a twentieth of a unit of length are the smallest whose area and volume read well
     for name, size in (("m", 1.0), ("mm", 1e-3)):
-        if abs(metric.mean) >= size**power * 1e-6:
-            return f"{name}{power}", size**-power
+        if abs(metric.mean) >= (0.05 * size) ** power:
+            return f"{name}{power}", float(round(1.0 / size) ** power)
     return f"um{power}", 1e6**power
 
 

@@ -1,6 +1,6 @@
-"""One page that says what was made and whether to trust it."""
+"""One page that says what was made and whether to trust it, and one scene to turn."""
 
-from pipeline.report.content import ReportContent
+from pipeline.report.content import MeshContent, ReportContent, SourceFile
 from pipeline.report.page import PAGE, subject_of, write_report
 
-__all__ = ["PAGE", "ReportContent", "subject_of", "write_report"]
+__all__ = ["PAGE", "MeshContent", "ReportContent", "SourceFile", "subject_of", "write_report"]

@@ -9,11 +9,13 @@ from pipeline.analytics.plots import draw_efficiency, draw_figure_of_merit, draw
 from pipeline.analytics.settings import FilterSettings, FlowSettings
 from pipeline.data import Comparison, Floats, Mat, Metric, Solution
 from pipeline.mat import MatMeasures
+from pipeline.quality.table import shown_unit
 from pipeline.report.svg import BLUE, GREEN, INK, ORANGE, RED, chart
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_TYPESET = str.maketrans("u23", "µ²³")
 _SECTORS = 12  # of 15 degrees each
 _BINS = 60
 _MANY = 30.0  # the worst over the median, from which a logarithmic scale shows more
@@ -79,9 +81,11 @@ def thickness_profile(measures: MatMeasures) -> Markup:
 
 def metric_histogram(metric: Metric, values: Floats) -> Markup | None:
     """Count cells or faces by their value of a metric, with its limit; None where all of them have one value."""
-    unit = {"1": "", "m2": " [µm²]", "m3": " [µm³]"}.get(metric.unit, f" [{metric.unit}]")
-    scale = {"m2": 1e12, "m3": 1e18}.get(metric.unit, 1.0)
-    values = values * scale
+    name, scale = shown_unit(metric)
+    unit = "" if name == "1" else f" [{name.translate(_TYPESET)}]" if metric.unit in ("m2", "m3") else f" [{name}]"
+    values = values[np.isfinite(values)] * scale
+    if not len(values):
+        return None
     low, high = float(values.min()), float(values.max())
     if high - low <= _SAME * abs(high):
         return None

@@ -1,4 +1,4 @@
-"""What a page may show of a run: every part but the case may be missing."""
+"""What a page may show: of a run, of which every part but the case may be missing; of a mesh that is not ours."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -7,6 +7,7 @@ from typing import Any
 from pipeline.case import Case
 from pipeline.data import Comparison, FaceMesh, FluidDomain, Mat, QualityReport, Solution, Surface
 from pipeline.mat import MatMeasures
+from pipeline.quality import QualitySettings
 from pipeline.tetmesh.finish import TetmeshMeasures
 
 
@@ -45,3 +46,36 @@ class ReportContent:
     def name(self) -> str:
         """Name of the run."""
         return self.folder.resolve().name
+
+
+@dataclass(frozen=True, slots=True)
+class SourceFile:
+    """A file that something was read from: where, how many bytes, and the SHA-256 of them."""
+
+    path: str
+    size: int
+    digest: str
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class MeshContent:
+    """A mesh that is not ours, and what was found of it.
+
+    Parameters
+    ----------
+    path : Path
+        What was judged, as the command named it.
+    mesh : FaceMesh
+    quality : QualityReport
+    limits : QualitySettings
+    limits_of : str
+        Whose the limits are, in words.
+    files : tuple of SourceFile
+    """
+
+    path: Path
+    mesh: FaceMesh
+    quality: QualityReport
+    limits: QualitySettings
+    limits_of: str
+    files: tuple[SourceFile, ...]

@@ -1,5 +1,6 @@
 """The child process that draws: `python -m pipeline.report.painter FOLDER`; VTK renders nowhere else for a report."""
 
+import dataclasses
 import json
 import sys
 from pathlib import Path
@@ -9,14 +10,16 @@ import numpy as np
 
 from pipeline import store
 from pipeline.data import FaceMesh, FluidDomain, Mat, Surface
-from pipeline.report.scenes import BACKGROUND, SCENES, Subject
+from pipeline.report.drawing import BACKGROUND, Scene
+from pipeline.report.mesh_scenes import MESH_SCENES, MeshSubject
+from pipeline.report.scenes import SCENES, Subject
 
 if TYPE_CHECKING:
     from PIL import Image
 
-NOUNS = {"mat": Mat, "surface": Surface, "domain": FluidDomain, "mesh": FaceMesh}
-"""Parts of a subject that are handed over as files."""
-WORST, ORDER = "worst.npy", "order.json"
+_NOUNS = {"mat": Mat, "surface": Surface, "domain": FluidDomain, "mesh": FaceMesh}
+ORDER = "order.json"
+_KINDS: dict[str, type[Subject] | type[MeshSubject]] = {kind.__name__: kind for kind in (Subject, MeshSubject)}
 _FRAME = 16  # pixels of background kept around a picture
 _QUALITY = 82  # of JPEG: no rim shows around lines, and a page of eight pictures stays near 1 MB
 
@@ -27,9 +30,9 @@ def main(folder: Path) -> None:
     from PIL import Image
 
     order = json.loads((folder / ORDER).read_text())
-    subject = read_subject(folder)
+    subject = read_subject(folder, order["kind of subject"])
     for name in order["scenes"]:
-        scene = SCENES[name]
+        scene = scenes_of(subject)[name]
         plotter = pv.Plotter(off_screen=True, window_size=scene.size)
         plotter.set_background(BACKGROUND)
         plotter.enable_anti_aliasing("ssaa")
@@ -57,15 +60,37 @@ def trimmed(picture: "Image.Image") -> "Image.Image":
     )  # fmt: skip
 
 
-def read_subject(folder: Path) -> Subject:
-    """Read what `pipeline.report.render.Painting` handed over."""
-    nouns: dict[str, Any] = {
-        name: store.load(kind, folder / f"{name}.npz")
-        for name, kind in NOUNS.items()
-        if (folder / f"{name}.npz").exists()
-    }
-    worst = np.load(folder / WORST, allow_pickle=False) if (folder / WORST).exists() else None
-    return Subject(**nouns, worst=worst)
+def scenes_of(subject: Subject | MeshSubject) -> dict[str, Scene]:
+    """Give the views that there are of subjects of this kind, by their names."""
+    return MESH_SCENES if isinstance(subject, MeshSubject) else SCENES
+
+
+def possible(subject: Subject | MeshSubject) -> tuple[str, ...]:
+    """Names of the scenes for which everything is there."""
+    found = scenes_of(subject).items()
+    return tuple(name for name, scene in found if all(getattr(subject, need) is not None for need in scene.needs))
+
+
+def write_subject(subject: Subject | MeshSubject, folder: Path) -> str:
+    """Hand a subject over as files; gives the name of its kind, for the order."""
+    for item in dataclasses.fields(subject):
+        part = getattr(subject, item.name)
+        if isinstance(part, np.ndarray):
+            np.save(folder / f"{item.name}.npy", part, allow_pickle=False)
+        elif part is not None:
+            store.save(part, folder / f"{item.name}.npz")
+    return type(subject).__name__
+
+
+def read_subject(folder: Path, kind: str) -> Subject | MeshSubject:
+    """Read what `write_subject` wrote."""
+    parts: dict[str, Any] = {}
+    for item in dataclasses.fields(_KINDS[kind]):
+        if (folder / f"{item.name}.npz").exists():
+            parts[item.name] = store.load(_NOUNS[item.name], folder / f"{item.name}.npz")
+        elif (folder / f"{item.name}.npy").exists():
+            parts[item.name] = np.load(folder / f"{item.name}.npy", allow_pickle=False)
+    return _KINDS[kind](**parts)
 
 
 if __name__ == "__main__":

@@ -15,10 +15,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-import numpy as np
-
-from pipeline import store
 from pipeline.report import painter
+from pipeline.report.mesh_scenes import MeshSubject
 from pipeline.report.scenes import Subject
 
 _TIME_LIMIT = 600.0  # seconds; pictures of a million cells take one minute on one slow core
@@ -48,25 +46,20 @@ class Painting:
 
     Parameters
     ----------
-    subject : Subject
+    subject : Subject or MeshSubject
     scenes : iterable of str
-        Names of `pipeline.report.scenes.SCENES`, as `possible` gives them.
+        As `pipeline.report.painter.possible` gives them.
     kind : str
         ``"jpg"`` or ``"png"``.
     """
 
-    def __init__(self, subject: Subject, scenes: Iterable[str], kind: str = "jpg") -> None:
+    def __init__(self, subject: Subject | MeshSubject, scenes: Iterable[str], kind: str = "jpg") -> None:
         self._names = tuple(scenes)
         self._kind = kind
         self._home = tempfile.TemporaryDirectory(prefix="fibertwin-pictures-")
         folder = Path(self._home.name)
-        for name in painter.NOUNS:
-            noun = getattr(subject, name)
-            if noun is not None:
-                store.save(noun, folder / f"{name}.npz")
-        if subject.worst is not None:
-            np.save(folder / painter.WORST, subject.worst, allow_pickle=False)
-        (folder / painter.ORDER).write_text(json.dumps({"scenes": self._names, "kind": kind}))
+        order = {"scenes": self._names, "kind": kind, "kind of subject": painter.write_subject(subject, folder)}
+        (folder / painter.ORDER).write_text(json.dumps(order))
         # -P: the working folder must not become a place to import from
         command = [sys.executable, "-P", "-m", painter.__name__, str(folder)]
         with (folder / "log").open("wb") as log:

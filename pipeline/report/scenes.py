@@ -3,35 +3,40 @@
 Lengths are in micrometers here: VTK takes coordinates of 1e-6 for one point.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from pipeline.data import FIBERS, FaceMesh, Floats, FluidDomain, Ints, Mat, Surface
-from pipeline.export.vtk import patch_surface, volume_grid
+from pipeline.export.vtk import patch_surface
 from pipeline.geometry.box import Box
 from pipeline.geometry.polyhedra import polygons
+from pipeline.report.drawing import (
+    AIR,
+    BACKGROUND,
+    CELLS,
+    EDGES,
+    INK,
+    INLET,
+    MICRO,
+    OUTLET,
+    Scene,
+    add_balls,
+    add_outline,
+    add_section,
+    bounds,
+    colors_by_number,
+    extent,
+    look,
+    look_aslant,
+    near_the_middle,
+    scaled,
+    surface_of,
+)
 
 if TYPE_CHECKING:
     import pyvista as pv
-
-MICRO = 1e6
-BACKGROUND = "#f5f7fa"
-_INK = "#26303b"
-_AIR, _INLET, _OUTLET, _CELLS, _EDGES, _TROUBLE = (
-    "#b9d3ea", "#3b82c4", "#d97b35", "#e3eaf0", "#6b7b8b", "#d3222a",
-)  # fmt: skip
-# neighbors in this list differ in lightness as well as in hue: fibers with close numbers lie close in a layered mat
-_PALETTE = np.array(
-    [
-        (78, 121, 167), (242, 176, 92), (89, 161, 140), (225, 120, 110), (146, 199, 226), (120, 95, 150),
-        (160, 190, 105), (184, 115, 70), (240, 205, 110), (95, 110, 130), (210, 150, 185), (60, 135, 120),
-    ],
-    dtype=np.uint8,
-)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -43,20 +48,6 @@ class Subject:
     domain: FluidDomain | None = None
     mesh: FaceMesh | None = None
     worst: Floats | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Scene:
-    """A view: what it needs, its size in pixels, and how it is drawn."""
-
-    needs: tuple[str, ...]
-    size: tuple[int, int]
-    draw: Callable[["pv.Plotter", Subject], None]
-
-
-def fiber_colors(fiber: Ints) -> npt.NDArray[np.uint8]:
-    """Color of each fiber number, (n, 3) array of RGB; one number always has one color."""
-    return _PALETTE[fiber % len(_PALETTE)]
 
 
 def fibers_of_faces(mesh: FaceMesh, domain: FluidDomain) -> Ints:
@@ -84,15 +75,15 @@ def _fiber_faces(mesh: FaceMesh) -> Floats:
 def mat_from_above(plotter: "pv.Plotter", subject: Subject) -> None:
     """Draw the mat from downstream: x to the right, y up."""
     _add_fibers(plotter, _fiber_surface(subject))
-    _add_outline(plotter, subject.mat.slab)
-    _look(plotter, subject.mat.slab, towards=(0, 0, -1), up=(0, 1, 0))
+    add_outline(plotter, _slab(subject))
+    look(plotter, _slab(subject), towards=(0, 0, -1), up=(0, 1, 0))
 
 
 def mat_from_the_side(plotter: "pv.Plotter", subject: Subject) -> None:
     """Draw the mat along y: x to the right, thickness up."""
     _add_fibers(plotter, _fiber_surface(subject))
-    _add_outline(plotter, subject.mat.slab)
-    _look(plotter, subject.mat.slab, towards=(0, 1, 0), up=(0, 0, 1))
+    add_outline(plotter, _slab(subject))
+    look(plotter, _slab(subject), towards=(0, 1, 0), up=(0, 0, 1))
 
 
 def mat_in_its_duct(plotter: "pv.Plotter", subject: Subject) -> None:
@@ -101,16 +92,16 @@ def mat_in_its_duct(plotter: "pv.Plotter", subject: Subject) -> None:
 
     domain = subject.domain
     assert domain is not None
-    box = domain.box
+    box = scaled(domain.box, MICRO)
     _add_fibers(plotter, _fiber_surface(subject))
-    plotter.add_mesh(pv.Box(_bounds(box)), color=_AIR, opacity=0.13, lighting=False)
-    _add_outline(plotter, box, width=2.0)
-    _add_outline(plotter, subject.mat.slab, width=1.0)
-    (x0, y0, z0), (x1, y1, z1) = (np.multiply(corner, MICRO) for corner in (box.lower, box.upper))
+    plotter.add_mesh(pv.Box(bounds(box)), color=AIR, opacity=0.13, lighting=False)
+    add_outline(plotter, box, width=2.0)
+    add_outline(plotter, _slab(subject), width=1.0)
+    (x0, y0, z0), (x1, y1, z1) = box.lower, box.upper
     side = max(x1 - x0, y1 - y0)
     reach = 0.3 * side
     middle = (0.5 * (x0 + x1), 0.5 * (y0 + y1))
-    for z, start, color, name in ((z0, -1.2, _INLET, "inlet"), (z1, 0.2, _OUTLET, "outlet")):
+    for z, start, color, name in ((z0, -1.2, INLET, "inlet"), (z1, 0.2, OUTLET, "outlet")):
         plotter.add_mesh(pv.Box((x0, x1, y0, y1, z, z)), color=color, opacity=0.35, lighting=False)
         arrow = pv.Arrow(
             start=(*middle, z + start * reach), direction=(0, 0, 1), scale=reach, tip_radius=0.1, tip_length=0.35,
@@ -122,18 +113,14 @@ def mat_in_its_duct(plotter: "pv.Plotter", subject: Subject) -> None:
             [(x0, y0 - 0.03 * side, z)], [name], font_size=36, bold=True, text_color=color, shape=None,
             show_points=False, always_visible=True, justification_horizontal="center", justification_vertical="top",
         )  # fmt: skip
-    around = Box(
-        (box.lower[0], box.lower[1] - 0.12 * side / MICRO, box.lower[2] - 1.2 * reach / MICRO),
-        (box.upper[0], box.upper[1], box.upper[2] + 1.2 * reach / MICRO),
-    )
-    _look(plotter, around, towards=(1.0, -0.42, 0.5), up=(0, 1, 0))
+    around = Box((x0, y0 - 0.12 * side, z0 - 1.2 * reach), (x1, y1, z1 + 1.2 * reach))
+    look(plotter, around, towards=(1.0, -0.42, 0.5), up=(0, 1, 0))
 
 
 def cut_through_cells(plotter: "pv.Plotter", subject: Subject) -> None:
     """Draw the middle plane x through all cells, and through its holes the fibers behind it."""
     mesh = _add_slice(plotter, subject, edges=0.8)
-    box = Box(tuple(mesh.points.min(axis=0).tolist()), tuple(mesh.points.max(axis=0).tolist()))
-    _look(plotter, box, towards=(1, 0, 0), up=(0, 1, 0))
+    look(plotter, extent(mesh, MICRO), towards=(1, 0, 0), up=(0, 1, 0))
 
 
 def cut_close_up(plotter: "pv.Plotter", subject: Subject) -> None:
@@ -145,47 +132,42 @@ def cut_close_up(plotter: "pv.Plotter", subject: Subject) -> None:
     half = 0.5 * min(high[1] - low[1], high[2] - low[2])
     # around the fiber that the plane meets nearest to the middle: that of the walls within half a radius of it
     walls = _fiber_faces(mesh) * MICRO
-    met = np.abs(walls[:, 0] - _middle(subject)) < 0.5 * MICRO * float(subject.mat.radius.min())
+    met = np.abs(walls[:, 0] - MICRO * _middle(subject)) < 0.5 * MICRO * float(subject.mat.radius.min())
     middle = 0.5 * (low + high)
     places = walls[met] / MICRO
     if len(places):
         middle = places[np.argmin(np.linalg.norm((places - middle)[:, 1:], axis=1))]
     plan = Box((low[0], middle[1] - half, middle[2] - half), (high[0], middle[1] + half, middle[2] + half))
-    _look(plotter, plan, towards=(1, 0, 0), up=(0, 1, 0))
+    look(plotter, scaled(plan, MICRO), towards=(1, 0, 0), up=(0, 1, 0))
 
 
 def cells_behind_the_cut(plotter: "pv.Plotter", subject: Subject) -> None:
     """Draw the whole cells behind the middle plane x, and all fibers as the mesh has them."""
     mesh = subject.mesh
     assert mesh is not None
-    behind = MICRO * mesh.polyhedra().cell_centers[:, 0] > _middle(subject)
-    grid = volume_grid(mesh, behind, MICRO)
+    behind = mesh.polyhedra().cell_centers[:, 0] > _middle(subject)
     plotter.add_mesh(
-        grid.extract_surface(algorithm="dataset_surface"),
-        color=_CELLS, ambient=0.35, diffuse=0.6, show_edges=True, edge_color=_EDGES, line_width=0.8,
+        surface_of(mesh, behind, MICRO),
+        color=CELLS, ambient=0.35, diffuse=0.6, show_edges=True, edge_color=EDGES, line_width=0.8,
     )  # fmt: skip
     _add_fibers(plotter, _mesh_fibers(subject))
-    box = Box(tuple(mesh.points.min(axis=0).tolist()), tuple(mesh.points.max(axis=0).tolist()))
-    _look(plotter, box, towards=(1.0, -0.45, 0.55), up=(0, 1, 0))
+    look(plotter, extent(mesh, MICRO), towards=(1.0, -0.45, 0.55), up=(0, 1, 0))
 
 
 def fibers_of_the_mesh(plotter: "pv.Plotter", subject: Subject) -> None:
     """Draw the mesh's own faces on the fibers, colored by fiber."""
     _add_fibers(plotter, _mesh_fibers(subject), edges=0.8)
-    _add_outline(plotter, subject.mat.slab)
-    _look_aslant(plotter, subject.mat.slab)
+    add_outline(plotter, _slab(subject))
+    look_aslant(plotter, _slab(subject))
 
 
 def worst_cells(plotter: "pv.Plotter", subject: Subject) -> None:
     """Draw where the worst cells and faces beyond a limit are, as dots among the fibers."""
-    import pyvista as pv
-
     assert subject.worst is not None
     plotter.add_mesh(_fiber_surface(subject), color="#aab4bf", opacity=0.3)
-    _add_outline(plotter, subject.mat.slab)
-    ball = pv.Sphere(radius=0.012 * MICRO * max(subject.mat.slab.size))
-    plotter.add_mesh(pv.PolyData(subject.worst * MICRO).glyph(geom=ball, scale=False, orient=False), color=_TROUBLE)
-    _look_aslant(plotter, subject.mat.slab)
+    add_outline(plotter, _slab(subject))
+    add_balls(plotter, subject.worst * MICRO, 0.012 * MICRO * max(subject.mat.slab.size))
+    look_aslant(plotter, _slab(subject))
 
 
 SCENES = {
@@ -201,36 +183,31 @@ SCENES = {
 """Every view by its name."""
 
 
-def possible(subject: Subject) -> tuple[str, ...]:
-    """Names of the scenes for which everything is there."""
-    return tuple(
-        name for name, scene in SCENES.items() if all(getattr(subject, need) is not None for need in scene.needs)
-    )
-
-
 def _fiber_surface(subject: Subject) -> "pv.PolyData":
     import pyvista as pv
 
     surface = subject.surface
-    if surface is None:
-        return _tubes(subject.mat)
-    skin = pv.PolyData.from_regular_faces(surface.points * MICRO, surface.triangles)
-    skin.cell_data["color"] = fiber_colors(surface.fiber)
+    points, triangles, fiber = (
+        tubes_of(subject.mat) if surface is None else (surface.points, surface.triangles, surface.fiber)
+    )
+    skin = pv.PolyData.from_regular_faces(points * MICRO, triangles)
+    skin.cell_data["color"] = colors_by_number(fiber)
     return skin
 
 
-def _tubes(mat: Mat) -> "pv.PolyData":
-    # before the fibers are united there are only center lines: round tubes stand for them, cut where the mat ends
+def tubes_of(mat: Mat) -> tuple[Floats, Ints, Ints]:
+    """Give round tubes in place of a surface, before the fibers are united: points [m], triangles, fiber of each."""
     import pyvista as pv
 
-    parts = []
+    points, triangles, fiber, count = [], [], [], 0
     for k, radius in enumerate(mat.radius):
         line = mat.nodes[mat.first[k] : mat.first[k + 1]] * MICRO
-        tube = pv.MultipleLines(line).tube(radius=float(radius) * MICRO, n_sides=16, capping=True)
-        tube.clear_data()
-        tube.cell_data["color"] = np.tile(fiber_colors(np.array([k])), (tube.n_cells, 1))
-        parts.append(tube)
-    return pv.merge(parts).extract_surface(algorithm="dataset_surface")
+        tube = pv.MultipleLines(line).tube(radius=float(radius) * MICRO, n_sides=16, capping=True).triangulate()
+        points.append(np.asarray(tube.points, np.float64) / MICRO)
+        triangles.append(count + np.asarray(tube.regular_faces, np.int64))
+        fiber.append(np.full(len(triangles[-1]), k))
+        count += len(points[-1])
+    return np.concatenate(points), np.concatenate(triangles), np.concatenate(fiber)
 
 
 def _mesh_fibers(subject: Subject, beyond: float | None = None) -> "pv.PolyData":
@@ -238,20 +215,23 @@ def _mesh_fibers(subject: Subject, beyond: float | None = None) -> "pv.PolyData"
     assert mesh is not None
     assert domain is not None
     skin = patch_surface(mesh, FIBERS, MICRO)
-    skin.cell_data["color"] = fiber_colors(fibers_of_faces(mesh, domain))
-    return skin if beyond is None else skin.clip("x", origin=(beyond, 0, 0), invert=False)
+    skin.cell_data["color"] = colors_by_number(fibers_of_faces(mesh, domain))
+    return skin if beyond is None else skin.clip("x", origin=(MICRO * beyond, 0, 0), invert=False)
 
 
 def _middle(subject: Subject) -> float:
-    # a plane that holds grid points would show cells' faces in place of their sections
-    slab = subject.mat.slab
-    return MICRO * (slab.lower[0] + 0.5003 * slab.size[0])
+    """Where the plane x of the pictures stands [m]."""
+    return near_the_middle(subject.mat.slab.lower[0], subject.mat.slab.upper[0])
+
+
+def _slab(subject: Subject) -> Box:
+    return scaled(subject.mat.slab, MICRO)
 
 
 def _add_fibers(plotter: "pv.Plotter", skin: "pv.PolyData", edges: float = 0.0) -> None:
     plotter.add_mesh(
         skin, scalars="color", rgb=True, preference="cell", ambient=0.25, diffuse=0.8, specular=0.15,
-        show_edges=edges > 0, edge_color=_INK, line_width=edges or 1.0,
+        show_edges=edges > 0, edge_color=INK, line_width=edges or 1.0,
     )  # fmt: skip
 
 
@@ -259,63 +239,15 @@ def _add_slice(plotter: "pv.Plotter", subject: Subject, edges: float) -> FaceMes
     mesh = subject.mesh
     assert mesh is not None
     middle = _middle(subject)
-    sections = volume_grid(mesh, _crossing(mesh, middle / MICRO), MICRO).slice(
-        "x", origin=(middle, 0, 0), generate_triangles=False
-    )
-    plotter.add_mesh(sections, color=_CELLS, lighting=False, show_edges=True, edge_color=_EDGES, line_width=edges)
+    add_section(plotter, mesh, 0, middle, MICRO, edges)
     _add_fibers(plotter, _mesh_fibers(subject, beyond=middle))
     return mesh
 
 
-def _crossing(mesh: FaceMesh, x: float) -> npt.NDArray[np.bool_]:
-    """Find the cells on both sides of a plane."""
-    beyond = mesh.points[mesh.corners, 0] > x
-    some, every = (each.reduceat(beyond, mesh.offsets[:-1]) for each in (np.logical_or, np.logical_and))
-    sides = []
-    for met in (some, ~every):
-        cells = np.zeros(mesh.cells, dtype=bool)
-        cells[mesh.owner[met]] = True
-        cells[mesh.neighbour[met[: mesh.internal]]] = True
-        sides.append(cells)
-    return np.asarray(sides[0] & sides[1])
-
-
-def _add_outline(plotter: "pv.Plotter", box: Box, width: float = 1.5) -> None:
-    import pyvista as pv
-
-    edges = pv.Box(_bounds(box)).extract_all_edges()
-    plotter.add_mesh(edges, color=_INK, line_width=width, lighting=False)
-
-
-def _bounds(box: Box) -> tuple[float, ...]:
-    return tuple(MICRO * value for pair in zip(box.lower, box.upper, strict=True) for value in pair)
-
-
-def _look(plotter: "pv.Plotter", box: Box, towards: tuple[float, float, float], up: tuple[float, float, float]) -> None:
-    """Look in a direction, in parallel projection, so that the box just fills the picture."""
-    direction = np.array(towards, float) / np.linalg.norm(towards)
-    right = np.cross(direction, up)
-    right /= np.linalg.norm(right)
-    above = np.cross(right, direction)
-    low, high = MICRO * np.array(box.lower), MICRO * np.array(box.upper)
-    center, size = 0.5 * (low + high), high - low
-    plotter.camera_position = [center - 4.0 * float(np.linalg.norm(size)) * direction, center, above]
-    plotter.enable_parallel_projection()
-    width, height = plotter.window_size
-    half = 0.5 * max(float(size @ np.abs(above)), float(size @ np.abs(right)) * height / width)
-    plotter.camera.parallel_scale = 1.04 * half
-    plotter.reset_camera_clipping_range()
-
-
-def _look_aslant(plotter: "pv.Plotter", box: Box) -> None:
-    _look(plotter, box, towards=(0.75, 1.15, -0.85), up=(0, 0, 1))
-
-
-def show(subject: Subject, scene: str | None, title: str) -> None:
+def show(subject: Subject, there: tuple[str, ...], scene: str | None, title: str) -> None:
     """Open a window on a scene, or on the mat beside the richest scene there is, and wait until it is closed."""
     import pyvista as pv
 
-    there = possible(subject)
     richest = next(name for name in ("cells", "duct", "mat-top") if name in there)
     names = (scene,) if scene else tuple(dict.fromkeys(("duct" if "duct" in there else "mat-side", richest)))
     plotter = pv.Plotter(shape=(1, len(names)), window_size=(900 * len(names), 800), title=title)

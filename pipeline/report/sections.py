@@ -3,7 +3,7 @@
 import importlib.metadata
 import math
 import platform
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 from pydantic import BaseModel
@@ -11,22 +11,21 @@ from pydantic import BaseModel
 from pipeline.analytics import comparison_tables, filter_of_mat, predict, prediction_tables
 from pipeline.analytics.settings import FilterSettings
 from pipeline.analytics.tables import Table, length
-from pipeline.data import Comparison, Floats, Metric
+from pipeline.data import Comparison
 from pipeline.progress import Progress
-from pipeline.quality.judge import measure
-from pipeline.quality.table import HEADER, rows, summary
+from pipeline.quality.kinds import kinds_in_words
 from pipeline.report import charts, words
 from pipeline.report.content import ReportContent
-
-_SHOWN_WORST = 5
+from pipeline.report.quality_section import quality_section
 
 
 def sections(content: ReportContent, progress: Progress) -> dict[str, Any]:
     """Make every section; None where the run has nothing for it."""
     progress("report: charts", 0.1)
-    made = {"mat": _mat(content), "duct": _duct(content), "mesh": _mesh(content)}
+    made: dict[str, Any] = {"mat": _mat(content), "duct": _duct(content), "mesh": _mesh(content), "quality": None}
     progress("report: histograms of the mesh", 0.2)
-    made["quality"] = _quality(content)
+    if content.quality is not None:
+        made["quality"] = quality_section(content.quality, content.mesh)
     progress("report: models", 0.4)
     made["comparison"] = _comparison(content)
     made["prediction"] = _prediction(content)
@@ -108,8 +107,7 @@ def _mesh(content: ReportContent) -> dict[str, Any] | None:
     if mesh is None:
         return None
     patches = ", ".join(f"{patch.name} {patch.count:,}" for patch in mesh.patches)
-    kind = "tetrahedra" if mesh.tetrahedral else "polyhedra"
-    facts = [("size", f"{mesh.cells:,} {kind} on {len(mesh.points):,} points"), ("boundary faces", patches)]
+    facts = [("cells", kinds_in_words(mesh)), ("points", f"{len(mesh.points):,}"), ("boundary faces", patches)]
     made = content.mesh_measures
     if made is not None:
         facts += [
@@ -121,41 +119,6 @@ def _mesh(content: ReportContent) -> dict[str, Any] | None:
             ("mesher", f"{made.mesher_seconds:.3g} s, at most {made.mesher_peak_memory / 2**20:,.0f} MiB"),
         ]
     return {"facts": facts}
-
-
-def _quality(content: ReportContent) -> dict[str, Any] | None:
-    report = content.quality
-    if report is None:
-        return None
-    values: Mapping[str, Floats] = measure(content.mesh) if content.mesh is not None else {}
-    return {
-        "summary": summary(report),
-        "reasons": report.reasons,
-        "table": Table("", HEADER, tuple(rows(report))),
-        "charts": [
-            drawn
-            for name, metric in report.metrics.items()
-            if name in values and (drawn := charts.metric_histogram(metric, values[name])) is not None
-        ],
-        "worst": Table(
-            "", ("metric", "where", "limit", "value", "x [µm]", "y [µm]", "z [µm]"),
-            tuple(line for metric in report.metrics.values() for line in _worst_rows(metric)),
-        ),
-    }  # fmt: skip
-
-
-def _worst_rows(metric: Metric) -> Iterator[tuple[str, ...]]:
-    if metric.limit is None:
-        return
-    # with every limit kept, the single worst is enough to know where to look
-    few = min(metric.over_limit, _SHOWN_WORST) or 1
-    unit = {"1": "", "m2": " µm²", "m3": " µm³"}.get(metric.unit, f" {metric.unit}")
-    scale = {"m2": 1e12, "m3": 1e18}.get(metric.unit, 1.0)
-    kept = "broken" if metric.over_limit else "kept"
-    singular = metric.where.removesuffix("s")
-    for number, value, place in metric.worst[:few]:
-        place_text = (f"{1e6 * coordinate:.3f}" for coordinate in place)
-        yield (metric.name.replace("_", " "), f"{singular} {number}", kept, f"{value * scale:.4g}{unit}", *place_text)
 
 
 def _comparison(content: ReportContent) -> dict[str, Any] | None:
@@ -235,19 +198,26 @@ def _provenance(content: ReportContent) -> dict[str, Any]:
         for name, manifest in content.manifests.items()
     ]
     return {
-        "settings": list(_settings(content.case)),
+        "settings": list(settings_rows(content.case)),
         "stages": stages,
-        "versions": f"fibertwin {importlib.metadata.version('fibertwin')}, Python {platform.python_version()}, "
-        f"{platform.system()} {platform.machine()}",
+        "versions": versions(),
     }
 
 
-def _settings(settings: BaseModel, path: str = "") -> Iterator[tuple[str, str, str]]:
+def versions() -> str:
+    """Say which program on what machine made a page."""
+    return (
+        f"fibertwin {importlib.metadata.version('fibertwin')}, Python {platform.python_version()}, "
+        f"{platform.system()} {platform.machine()}"
+    )
+
+
+def settings_rows(settings: BaseModel, path: str = "") -> Iterator[tuple[str, str, str]]:
     """Give every setting: its path in the case file, its value in SI, and what it is."""
     for name, about in type(settings).model_fields.items():
         value = getattr(settings, name)
         if isinstance(value, BaseModel):
-            yield from _settings(value, f"{path}{name}.")
+            yield from settings_rows(value, f"{path}{name}.")
         elif value is not None:
             text = ", ".join(map(str, value)) if isinstance(value, tuple) else str(value)
             yield f"{path}{name}", text, about.description or ""

@@ -43,7 +43,7 @@ def checks(content: ReportContent) -> list[Check]:
             )
         )
     if content.quality is not None:
-        found.append(_cells(content.quality))
+        found.append(cells(content.quality))
     if content.comparison is not None:
         found += _solidities(content, content.comparison)
     if content.mat is not None:
@@ -55,18 +55,19 @@ def checks(content: ReportContent) -> list[Check]:
     return found
 
 
-def verdict(content: ReportContent) -> tuple[str, str]:
+def verdict(quality: QualityReport | None) -> tuple[str, str]:
     """Give the mark and the words of the whole: that of the mesh, for only a mesh can be unfit."""
-    if content.quality is None:
+    if quality is None:
         return NOTE, "no mesh yet"
     return {
         "pass": (GOOD, "mesh is fit for a solver"),
         "warn": (NOTE, "mesh is usable, with a loss of accuracy"),
         "fail": (BAD, "mesh is not fit for a solver"),
-    }[content.quality.verdict]
+    }[quality.verdict]
 
 
-def _cells(report: QualityReport) -> Check:
+def cells(report: QualityReport) -> Check:
+    """Say whether a solver can take the mesh, and every limit that does not hold."""
     mark, title, words = {
         "pass": (GOOD, "the mesh is fit for a solver", "Every limit holds, in every cell and face."),
         "warn": (
@@ -184,6 +185,9 @@ def steps(content: ReportContent) -> list[Step]:
         found.append(Step("Solve the flow with OpenFOAM.", f"cd {folder}/export/openfoam && ./Allrun"))
     if content.mat is not None:
         found.append(Step("Turn the geometry and the mesh in a window.", f"fibertwin view {folder}"))
+        found.append(
+            Step("Send them as one file that turns in any browser.", f"fibertwin view {folder} --html scene.html")
+        )
     if "vtk" in exported:
         found.append(Step("Open all fields in ParaView.", f"paraview {folder}/export/vtk/mesh.vtm"))
     if content.comparison is not None:

@@ -1,5 +1,6 @@
 """`fibertwin init`, `cases` and `schema`: the case file before there is one."""
 
+import importlib.metadata
 import json
 import re
 import tomllib
@@ -99,3 +100,34 @@ def test_every_command_tells_what_each_of_its_options_does(fibertwin: Fibertwin)
         options = re.findall(r"^│ [ *] +(\S+.*?)(?:  +(.*))?│$", text, re.MULTILINE)
         named = [(name, meaning) for name, meaning in options if name.startswith("-") or name.isupper()]
         assert all(meaning.strip() for _, meaning in named), (command, named)
+
+
+def test_doctor_names_what_is_there_and_the_command_for_what_is_missing(
+    fibertwin: Fibertwin, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setenv("COLUMNS", "200")
+    # no window of X where there is no X
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "vtkXOpenGLRenderWindow")
+    said = fibertwin("doctor")
+    # nothing that is needed is missing
+    assert said.code == 0
+    for line in ("apt-get install openfoam", "apt-get install openmpi-bin", "apt-get install libegl1 libgl1-mesa-dri"):
+        assert line in said.out
+    assert re.search(r"ok +numpy +\d", said.out)
+    assert "MISSING" not in said.out
+
+
+@pytest.mark.openfoam
+def test_doctor_tells_openfoams_version(fibertwin: Fibertwin) -> None:
+    assert re.search(r"ok +OpenFOAM +\d{4}", fibertwin("doctor").out)
+
+
+def test_the_version_is_that_of_the_package(fibertwin: Fibertwin) -> None:
+    assert fibertwin("--version").out.strip() == importlib.metadata.version("fibertwin")
+
+
+def test_help_keeps_silent_of_switches_that_are_off(fibertwin: Fibertwin) -> None:
+    assert "default" not in fibertwin("run", "--help").out
+    assert "[default: layered]" in fibertwin("init", "--help").out

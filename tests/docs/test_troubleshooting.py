@@ -4,11 +4,14 @@ import re
 import shlex
 from pathlib import Path
 
+import meshio
+import numpy as np
 import pytest
 
 from pipeline.cli.bundled import bundled
 from tests.cli.conftest import Fibertwin
 from tests.cli.conftest import fibertwin as fibertwin  # the fixture
+from tests.security.inputs import seeds
 
 PAGE = (Path(__file__).parents[2] / "docs/troubleshooting.md").read_text(encoding="utf-8")
 SHOWN = re.findall(r"```sh\nfibertwin ([^\n]*)\n```\n\n```text\n(.*?)\n```", PAGE, re.DOTALL)
@@ -28,8 +31,13 @@ def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fibertwin: Fibertwi
     (tmp_path / "broken.vtu").write_text("<svg/>")
     (tmp_path / "binary.cas").write_bytes(b"(3010 (1 1 8 1 3)(\x00\x01")
     (tmp_path / "empty").mkdir()
+    (tmp_path / "mesh.vtu").write_bytes(seeds()["polyhedra.vtu"])
+    meshio.write(tmp_path / "skin.vtu", meshio.Mesh(np.eye(3), [("triangle", np.array([[0, 1, 2]]))]))
+    (tmp_path / "wrong.vtu").write_bytes(seeds()["polyhedra.vtu"].replace(b"31", b"30", 1))
+    (tmp_path / "begun").mkdir()
     monkeypatch.chdir(tmp_path)
     assert fibertwin("run", "case.toml", "--until", "mat", "--out", "done", "--quiet").code == 0
+    (tmp_path / "begun/case.json").write_bytes((tmp_path / "done/case.json").read_bytes())
     return tmp_path
 
 
@@ -41,4 +49,4 @@ def test_the_message_is_the_programs_own(fibertwin: Fibertwin, folder: Path, com
 
 
 def test_the_page_shows_messages_of_every_kind() -> None:
-    assert len(SHOWN) >= 18
+    assert len(SHOWN) >= 24

@@ -12,8 +12,11 @@ from pipeline.errors import StageError
 from pipeline.export import export
 from pipeline.export.read import read_mesh
 from pipeline.export.settings import ExportSettings, Format
+from pipeline.export.vtk import write_vtk
 from tests.openfoam import AIR
+from tests.quality.test_kinds import beside_smaller
 from tests.sample_meshes import duct
+from tests.security.inputs import seeds
 
 BLOCK_POINTS = np.array([[x, y, z] for z in (0, 1, 2.0) for y in (0, 1.0) for x in (0, 1.0)])
 
@@ -119,3 +122,20 @@ def test_damaged_files_of_every_format_end_in_our_error_or_a_mesh(files: list[Pa
     broken.write_bytes(content[:at] + junk + (content[at + len(junk) :] if keep else b""))
     with contextlib.suppress(StageError):
         assert read_mesh(broken).cells > 0
+
+
+@pytest.mark.parametrize("name", ["polyhedra.vtu", "newer.vtu"])
+def test_a_polyhedron_among_hexahedra_is_read_from_vtu(name: str, tmp_path: Path) -> None:
+    # a unit cube as such, and another on it as a polyhedron of six faces
+    (tmp_path / name).write_bytes(seeds()[name])
+    mesh = read_mesh(tmp_path / name)
+    assert (mesh.cells, mesh.faces, mesh.internal) == (2, 11, 1)
+    assert mesh.volume == pytest.approx(2.0, rel=1e-12)
+
+
+def test_what_vtk_itself_writes_of_hexahedra_and_polyhedra_is_read(tmp_path: Path) -> None:
+    mesh = beside_smaller()
+    write_vtk(mesh, tmp_path, {})
+    found = read_mesh(tmp_path / "internal.vtu")
+    assert (found.cells, found.faces, found.internal) == (mesh.cells, mesh.faces, mesh.internal)
+    assert found.volume == pytest.approx(1.5, rel=1e-12)

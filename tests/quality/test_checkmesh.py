@@ -1,12 +1,16 @@
 """Agreement with OpenFOAM's own `checkMesh`, on tetrahedra, polyhedra and hexahedra with hanging nodes."""
 
+import re
+import shutil
 from pathlib import Path
 
 import pytest
 
 from pipeline.data import FaceMesh
+from pipeline.export import read_mesh
 from pipeline.export.openfoam import read_openfoam, write_openfoam
 from pipeline.quality import judge
+from pipeline.quality.kinds import cells_by_kind
 from tests.openfoam import AIR, figures, foam, patches
 from tests.sample_meshes import duct
 
@@ -62,6 +66,9 @@ def assert_as_checkmesh_says(case: Path, mesh: FaceMesh, *, cells_of_kind: str) 
         int(text.split("severely non-orthogonal (> 70 degrees) faces:")[1].split(".")[0]) if "severely" in text else 0
     )
     assert report.metrics["non_orthogonality"].over_limit == above
+    kinds = dict(re.findall(r"^    (hexahedra|prisms|pyramids|tetrahedra|polyhedra): +(\d+)$", text, re.MULTILINE))
+    assert len(kinds) == 5
+    assert cells_by_kind(mesh) == {kind: int(count) for kind, count in kinds.items() if int(count)}
 
 
 @pytest.fixture
@@ -92,3 +99,27 @@ def test_hanging_nodes_of_snappyhexmesh_agree_to_five_digits(tets: tuple[Path, F
     assert_as_checkmesh_says(case, read_openfoam(case), cells_of_kind="hexahedra")
     foam(case, "snappyHexMesh", "-overwrite")
     assert_as_checkmesh_says(case, read_openfoam(case), cells_of_kind="polyhedra")
+
+
+def test_meshes_that_openfoam_wrote_for_others_are_the_same_mesh(tets: tuple[Path, FaceMesh]) -> None:
+    case, _ = tets
+    (case / "system/blockMeshDict").write_text(BLOCK)
+    (case / "system/snappyHexMeshDict").write_text(SNAPPY)
+    foam(case, "blockMesh")
+    foam(case, "snappyHexMesh", "-overwrite")
+    # the fields of the mesh before have no place on this one
+    shutil.rmtree(case / "0")
+    foam(case, "foamToVTK")
+    foam(case, "foamMeshToFluent")
+    ours = judge(read_mesh(case))
+    written = next(case.glob("VTK/*/internal.vtu")), next(case.glob("fluentInterface/*.msh"))
+    for path in written:
+        mesh = read_mesh(path)
+        theirs = judge(mesh)
+        # hexahedra, prisms and polyhedra in one file, numbered otherwise; VTK's has points of 32 bits
+        assert cells_by_kind(mesh) == cells_by_kind(read_mesh(case))
+        assert (theirs.cells, theirs.faces, theirs.internal_faces) == (ours.cells, ours.faces, ours.internal_faces)
+        assert theirs.volume == pytest.approx(ours.volume, rel=1e-5)
+        for name, metric in ours.metrics.items():
+            if name != "openness":
+                assert theirs.metrics[name].mean == pytest.approx(metric.mean, rel=2e-4, abs=1e-6), name

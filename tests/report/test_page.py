@@ -9,12 +9,14 @@ import pytest
 
 from pipeline.data import Mat
 from pipeline.progress import silent
+from pipeline.quality import judge
 from pipeline.report import ReportContent
 from pipeline.report.page import filled
 from pipeline.report.render import Pictures
 from pipeline.report.sections import sections
 from tests.report.contents import CASE, SECTIONS, SOLUTION, whole
 from tests.report.pages import Page, read
+from tests.sample_meshes import cylinder
 
 
 @pytest.fixture(scope="module")
@@ -128,3 +130,12 @@ def test_fibers_of_many_diameters_are_told_with_their_spread(content: ReportCont
     mixed = Mat(m.nodes, m.first, radius, m.slab, -1, "by hand", m.periodic)
     html = html_of(ReportContent(content.folder, CASE, mat=mixed))
     assert "nobody drew these fibers" in html
+
+
+def test_a_run_of_hexahedra_says_so_and_has_their_histograms(content: ReportContent) -> None:
+    mesh = cylinder(0.1, 0.7e-6, around=6, outward=4, turns=1)
+    page = read(html_of(dataclasses.replace(content, mesh=mesh, quality=judge(mesh))))
+    assert f"{mesh.cells:,} hexahedra" in page.text
+    assert not re.search(r"\d tetrahedra", " ".join(page.text))
+    # pyramids over the faces of a hexahedron differ: there is a histogram to draw
+    assert "metric-face_pyramid-figure_1" in page.values("id")

@@ -8,11 +8,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from pipeline.data import FIBERS, Floats
+from pipeline.data import FIBERS, FaceMesh, Floats, Patch
+from pipeline.geometry.cells import cell_faces, polygons_of
 from pipeline.report import subject_of, write_report
-from pipeline.report.painter import trimmed
+from pipeline.report.drawing import BACKGROUND
+from pipeline.report.mesh_scenes import MeshSubject
+from pipeline.report.painter import possible, trimmed
 from pipeline.report.render import Painting, rendering_environment
-from pipeline.report.scenes import BACKGROUND, SCENES, Subject, fibers_of_faces, possible
+from pipeline.report.scenes import SCENES, Subject, fibers_of_faces
 from tests.report.contents import whole
 from tests.report.pages import read
 
@@ -91,3 +94,36 @@ def test_without_a_screen_vtk_is_told_so(monkeypatch: pytest.MonkeyPatch) -> Non
     assert rendering_environment()["VTK_DEFAULT_OPENGL_WINDOW"] == "vtkEGLRenderWindow"
     monkeypatch.setenv("DISPLAY", ":0")
     assert "VTK_DEFAULT_OPENGL_WINDOW" not in rendering_environment()
+
+
+@pytest.mark.usefixtures("rendering")
+def test_hexahedra_are_cut_without_holes() -> None:
+    content = whole()
+    assert content.mat is not None
+    # a mesh without a hole, as large as the mat is: every pixel of its section is a cell
+    corners = np.stack(np.meshgrid(*[np.arange(6)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    steps = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
+    first = np.stack(np.meshgrid(*[np.arange(5)] * 3, indexing="ij"), axis=-1).reshape(-1, 1, 3)
+    cells = (first + steps) @ np.array([36, 6, 1])
+    found = cell_faces(polygons_of("hexahedron", cells), np.repeat(np.arange(125), 6))
+    offsets = np.arange(0, 4 * len(found.owner) + 1, 4)
+    patch = Patch("boundary", len(found.neighbour), len(found.owner) - len(found.neighbour))
+    mesh = FaceMesh(
+        np.multiply(corners, 2e-6, dtype=np.float64),
+        found.polygons.ravel(),
+        offsets,
+        found.owner,
+        found.neighbour,
+        125,
+        (patch,),
+    )
+    with Painting(MeshSubject(mesh, np.full(3, 5e-6)), ("section", "section-worst"), "png") as painting:
+        pictures = painting.finished()
+    assert pictures.trouble == ""
+    pixels = np.asarray(Image.open(io.BytesIO(pictures.files["section"])).convert("RGB"), int)[20:-20, 20:-20]
+    # cells and their outlines are gray; the patch behind, which would show in a hole, is blue
+    assert (np.ptp(pixels, axis=2) < 40).mean() > 0.995
+    worst = np.asarray(Image.open(io.BytesIO(pictures.files["section-worst"])).convert("RGB"), int)
+    # one of 25 squares is red
+    red = (worst[:, :, 0] > 180) & (worst[:, :, 1] < 80)
+    assert 0.02 < red.mean() < 0.06

@@ -16,7 +16,7 @@ def report(verdict: str, *reasons: str) -> QualityReport:
 @pytest.mark.parametrize(("word", "mark"), [("pass", GOOD), ("warn", NOTE), ("fail", BAD)])
 def test_the_verdict_of_the_mesh_is_the_verdict_of_the_page(word: str, mark: str) -> None:
     content = whole(quality=report(word, "skewness: 3 faces above 4"))
-    assert verdict(content)[0] == mark
+    assert verdict(content.quality)[0] == mark
     first = checks(content)[0]
     assert first.mark == mark
     assert "Skewness: 3 faces above 4." in first.sentence

@@ -105,7 +105,36 @@ def seeds() -> dict[str, bytes]:
     export(mesh, made, ExportSettings(formats=kinds), AIR, "symmetry")
     found |= {f"{path.parent.name}{path.suffix}": path.read_bytes() for path in made.glob("*/mesh.*[!m]")}
     found["vtk.vtu"] = (made / "vtk/internal.vtu").read_bytes()
+    found["polyhedra.vtu"] = _mixed_vtu(newer=False)
+    found["newer.vtu"] = _mixed_vtu(newer=True)
     return found
+
+
+def _mixed_vtu(newer: bool) -> bytes:
+    """Give a hexahedron and a polyhedron in one file, as text, so that damage hits numbers."""
+    faces = "6 4 4 6 7 5 4 8 9 11 10 4 4 5 9 8 4 5 7 11 9 4 7 6 10 11 4 6 4 8 10"
+    points = " ".join(f"{x} {y} {z}" for z in (0, 1, 2) for y in (0, 1) for x in (0, 1))
+    arrays = {
+        "connectivity": ("Int64", "0 1 3 2 4 5 7 6 4 5 6 7 8 9 10 11"), "offsets": ("Int64", "8 16"),
+        "types": ("UInt8", "12 42"), "faces": ("Int64", faces), "faceoffsets": ("Int64", "-1 31"),
+    }  # fmt: skip
+    if newer:
+        arrays |= {
+            "face_connectivity": ("Int64", "4 6 7 5 8 9 11 10 4 5 9 8 5 7 11 9 7 6 10 11 6 4 8 10"),
+            "face_offsets": ("Int64", "4 8 12 16 20 24"),
+            "polyhedron_to_faces": ("Int64", "0 1 2 3 4 5"), "polyhedron_offsets": ("Int64", "0 6"),
+        }  # fmt: skip
+    cells = "".join(
+        f'<DataArray type="{kind}" Name="{name}" format="ascii">\n{text}\n</DataArray>\n'
+        for name, (kind, text) in arrays.items()
+    )
+    return (
+        f'<VTKFile type="UnstructuredGrid" version="{"2.3" if newer else "0.1"}" '
+        'byte_order="LittleEndian">\n<UnstructuredGrid>\n'
+        '<Piece NumberOfPoints="12" NumberOfCells="2">\n<Points>\n<DataArray type="Float64" Name="Points" '
+        f'NumberOfComponents="3" format="ascii">\n{points}\n</DataArray>\n</Points>\n<Cells>\n{cells}</Cells>\n'
+        "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n"
+    ).encode()
 
 
 @cache

@@ -18,7 +18,7 @@ from pipeline.mat import exchange
 from pipeline.units import parse
 from tests.openfoam import AIR
 from tests.sample_meshes import duct
-from tests.security.inputs import in_time
+from tests.security.inputs import in_time, seeds
 
 
 def test_a_label_of_forty_digits_is_our_error(tmp_path: Path) -> None:
@@ -97,3 +97,10 @@ def test_a_compressed_mesh_that_unpacks_to_more_than_the_memory_is_refused(
 def test_a_stranger_does_not_steer_the_terminal() -> None:
     # the first would clear the screen, the second set the window's title
     assert printable("\x1b[2Jcell\x1b]0;title\x07\nnext") == "?[2Jcell?]0;title?\nnext"
+
+
+def test_a_number_too_few_in_a_text_file_is_our_error(tmp_path: Path) -> None:
+    path = tmp_path / "short.vtu"
+    path.write_bytes(seeds()["polyhedra.vtu"].replace(b"0 0 0 ", b"0 0 ", 1))
+    with pytest.raises(StageError, match="cannot read"):
+        read_mesh(path)

@@ -1,0 +1,27 @@
+"""Where numba keeps what it compiled: found before numba is loaded, or a job without a home would end there."""
+
+import os
+from pathlib import Path
+
+_CACHE = "NUMBA_CACHE_DIR"
+
+
+def make_room() -> None:
+    """Give numba a folder for this process alone where it could write neither beside its sources nor into the home.
+
+    Never a folder that others could have put something into: numba runs what it finds in its cache.
+    """
+    if _CACHE in os.environ or os.access(Path(__file__).parent / "geometry", os.W_OK):
+        return
+    home = Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser())
+    while not home.exists():
+        home = home.parent
+    if os.access(home, os.W_OK):
+        return
+    import atexit
+    import shutil
+    import tempfile
+
+    folder = tempfile.mkdtemp(prefix="fibertwin-numba-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    os.environ[_CACHE] = folder

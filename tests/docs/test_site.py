@@ -1,0 +1,75 @@
+"""The site: built strictly, from files alone, with the notebook's outputs; and a gallery that is up to date."""
+
+import importlib.util
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from pipeline.analytics.paper_figures import write_paper_figures
+from tests.report.conftest import rendering as rendering  # the fixture
+
+ROOT = Path(__file__).parents[2]
+GALLERY = ROOT / "docs/gallery"
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    if importlib.util.find_spec("material") is None:
+        pytest.skip("mkdocs-material is not installed; make docs does it")
+    folder = tmp_path_factory.mktemp("site")
+    # drawing the gallery has a test of its own
+    environment = {**os.environ, "FIBERTWIN_GALLERY": "kept", "NO_MKDOCS_2_WARNING": "1", "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir", str(folder)]
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+def test_nothing_on_the_site_is_loaded_from_elsewhere(site: Path) -> None:
+    pages = list(site.rglob("*.html"))
+    assert len(pages) > 15
+    for page in pages:
+        html = page.read_text(encoding="utf-8")
+        # links that a reader may follow are no requests; what a browser loads by itself is
+        loaded = re.findall(r"<(?:script|img|iframe|source)[^>]* src=[\"']?([^\"'\s>]+)", html)
+        loaded += re.findall(r"<link[^>]* rel=[\"']?(?:stylesheet|icon|preload)[^>]* href=[\"']?([^\"'\s>]+)", html)
+        assert loaded
+        assert not [address for address in loaded if "//" in address.split("?")[0]], page
+    styles = " ".join(path.read_text(encoding="utf-8") for path in site.rglob("*.css"))
+    assert not re.search(r"url\([\"']?(https?:)?//", styles)
+
+
+def test_the_notebook_is_shown_with_what_it_printed_and_drew(site: Path) -> None:
+    html = (site / "notebooks/first_case/index.html").read_text(encoding="utf-8")
+    assert re.search(r"\d+ fibers in \d+ straight pieces", html)
+    assert re.search(r"Davies: [\d.]+ Pa", html)
+    picture = re.search(r'src="(\.\./first_case_\d+\.svg)"', html)
+    assert picture
+    assert "<svg" in (site / "notebooks/first_case" / picture[1]).resolve().read_text(encoding="utf-8")
+    # the text leads to this page, and this page to the notebook itself
+    assert 'href="../notebooks/first_case/"' in (site / "python/index.html").read_text(encoding="utf-8")
+    assert (site / "notebooks/first_case.ipynb").is_file()
+
+
+def test_curves_of_the_models_in_the_gallery_are_what_is_drawn_now(tmp_path: Path) -> None:
+    for path in write_paper_figures(tmp_path):
+        assert path.read_bytes() == (GALLERY / path.name).read_bytes(), path.name
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("rendering")
+def test_pictures_of_mats_in_the_gallery_are_what_is_drawn_now(tmp_path: Path) -> None:
+    subprocess.run([sys.executable, ROOT / "docs/make_gallery.py", tmp_path], cwd=ROOT, check=True)
+    drawn = sorted(tmp_path.iterdir())
+    assert len(drawn) == 9
+    for path in drawn:
+        ours, kept = (np.asarray(Image.open(each).convert("RGB"), int) for each in (path, GALLERY / path.name))
+        # another renderer smooths edges otherwise; another mat would look otherwise everywhere
+        assert ours.shape == kept.shape, path.name
+        assert (np.abs(ours - kept).max(axis=2) > 40).mean() < 0.01, path.name
