@@ -130,6 +130,43 @@ class Mat:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class Pieces:
+    """Straight pieces of fibers, by their axes: where the true cylinders are that a surface stands for.
+
+    Parameters
+    ----------
+    start, end : (n, 3) arrays [m]
+        Of each axis; what ends on a side of the plan runs on beyond it.
+    fiber : (n,) int array
+        Fiber that each piece belongs to.
+    flat : (n, 2) bool array
+        Whether a piece ends flat at its start and at its end; else in half a ball, as it does at bends.
+    """
+
+    start: Floats
+    end: Floats
+    fiber: Ints
+    flat: npt.NDArray[np.bool_]
+
+    def __post_init__(self) -> None:
+        _freeze(
+            self,
+            start=np.asarray(self.start, np.float64),
+            end=np.asarray(self.end, np.float64),
+            fiber=np.asarray(self.fiber, np.int64),
+            flat=np.asarray(self.flat, np.bool_),
+        )
+        count = len(self.fiber)
+        _check(self.start.shape == self.end.shape == (count, 3), "not every piece has a start and an end")
+        _check(self.flat.shape == (count, 2), "not every piece says how it ends")
+        _check(bool((self.start != self.end).any(axis=1).all()), "a piece has no length")
+
+    def __len__(self) -> int:
+        """Count the pieces."""
+        return len(self.fiber)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class Surface:
     """The fibers' outside, united into closed surfaces and cut flush with the plan's sides.
 
@@ -144,6 +181,8 @@ class Surface:
         Radius of each fiber of the mat, as in `Mat`.
     slab : Box [m]
         The mat's slab.
+    pieces : Pieces
+        The fibers that the surface was built about.
     """
 
     points: Floats
@@ -151,6 +190,7 @@ class Surface:
     fiber: Ints
     radius: Floats
     slab: Box
+    pieces: Pieces
 
     def __post_init__(self) -> None:
         _freeze(
@@ -203,6 +243,8 @@ class FluidDomain:
         The duct with both plenums.
     slab : Box [m]
         The mat's slab within it.
+    pieces : Pieces
+        The fibers that the surface was built about.
     """
 
     points: Floats
@@ -213,6 +255,7 @@ class FluidDomain:
     radius: Floats
     box: Box
     slab: Box
+    pieces: Pieces
 
     def __post_init__(self) -> None:
         _freeze(

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from pipeline import machine, store
+from pipeline import store
 from pipeline.analytics import compare, predictor
 from pipeline.analytics.growth import Predictor
 from pipeline.analytics.pressure_models import pressure_model
@@ -19,6 +19,7 @@ from pipeline.errors import StageError
 from pipeline.export import FiberSlip, export, fiber_radius
 from pipeline.export.openfoam.dictionaries import SOLVER
 from pipeline.geometry.tets import volume_between
+from pipeline.machine import peak_memory
 from pipeline.mat import ArraySettings, BoxSettings, FileSettings, LayeredSettings, MatMeasures, generate, measure
 from pipeline.mat.exchange import write_fibers
 from pipeline.mat.tally import report_stop
@@ -30,7 +31,7 @@ from pipeline.surface.files import write_surface
 from pipeline.surface.measures import measure_surface
 from pipeline.surface.union import unite
 from pipeline.tetmesh.fill import fill
-from pipeline.tetmesh.mesh import TetmeshMeasures
+from pipeline.tetmesh.finish import TetmeshMeasures
 
 SOLVING = ".solving"
 """Folder of a run that holds a solver's run until it has settled."""
@@ -412,7 +413,7 @@ def _step(stage: Stage, run: Run, again: bool, tell: Progress) -> Outcome:
     with store.side_folder(folder) as side:
         counts = stage.make(run, side, tell)
         seconds = time.perf_counter() - began
-        cost = {"seconds": seconds, "peak_memory": machine.peak_memory()}
+        cost = {"seconds": seconds, "peak_memory": peak_memory()}
         store.write_manifest(side, {"stage": stage.name, "key": key, **identity, **cost, "counts": counts})
     return Outcome(stage.name, folder, "made", seconds, counts)
 

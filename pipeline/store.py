@@ -110,9 +110,18 @@ def save(thing: object, path: Path) -> None:
         value = getattr(thing, item.name)
         if isinstance(value, np.ndarray):
             arrays[item.name] = value
+        elif _holds_arrays(type(value)):
+            arrays |= {f"{item.name}.{part.name}": getattr(value, part.name) for part in dataclasses.fields(value)}
         else:
             rest[item.name] = {"lower": value.lower, "upper": value.upper} if isinstance(value, Box) else value
     np.savez(path, **arrays, rest=np.array(json.dumps(rest, sort_keys=True, default=_plain)))
+
+
+def _holds_arrays(kind: object) -> bool:
+    """Whether this is a dataclass of arrays only."""
+    return dataclasses.is_dataclass(kind) and all(
+        typing.get_origin(item.type) is np.ndarray for item in dataclasses.fields(kind)
+    )
 
 
 def load(kind: type[T], path: Path) -> T:
@@ -131,7 +140,11 @@ def load(kind: type[T], path: Path) -> T:
         advice = f"run the stage again with --force {path.parent.name}"
         raise StageError(f"cannot read {path}: {problem}; {advice}") from problem
     for item in dataclasses.fields(kind):  # type: ignore[arg-type]
-        if item.type in (Box, "Box"):
+        if _holds_arrays(item.type):
+            prefix = f"{item.name}."
+            parts = {name.removeprefix(prefix): values.pop(name) for name in list(values) if name.startswith(prefix)}
+            values[item.name] = item.type(**parts)  # type: ignore[operator]
+        elif item.type in (Box, "Box"):
             corners = values[item.name]
             values[item.name] = Box(tuple(corners["lower"]), tuple(corners["upper"]))
         elif isinstance(values.get(item.name), list):

@@ -208,8 +208,9 @@ def test_without_openfoam_the_solver_is_skipped_with_the_reason(smoke: Run, monk
         (["mat.colour=red"], 2, "mat.colour: unknown key"),
         (["mat.stop.coverage=1e7"], 2, "fibers"),
         (["enclosure.inlet=0.1 nm", "mat.stop.count=3"], 1, "enclosure.inlet"),
-        (["tetmesh.time_limit=0.01 s"], 1, "tetmesh.time_limit"),
-        (["tetmesh.memory_limit=1 MB"], 1, "tetmesh.memory_limit"),
+        (["tetmesh.engine=tetwild", "tetmesh.time_limit=0.01 s"], 1, "tetmesh.time_limit"),
+        (["tetmesh.engine=tetwild", "tetmesh.memory_limit=1 MB"], 1, "tetmesh.memory_limit"),
+        (["tetmesh.memory_limit=0.1 MB"], 1, "tetmesh.memory_limit"),
     ],
 )
 def test_nonsense_gets_one_clear_error_and_nothing_half_written(

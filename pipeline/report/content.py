@@ -8,7 +8,7 @@ from pipeline.case import Case
 from pipeline.data import Comparison, FaceMesh, FluidDomain, Mat, QualityReport, Solution, Surface
 from pipeline.mat import MatMeasures
 from pipeline.quality import QualitySettings
-from pipeline.tetmesh.mesh import TetmeshMeasures
+from pipeline.tetmesh.finish import TetmeshMeasures
 
 
 @dataclass(frozen=True, eq=False, slots=True)

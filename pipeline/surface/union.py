@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from pipeline.data import Mat, Surface
+from pipeline.data import Mat, Pieces, Surface
 from pipeline.errors import StageError
 from pipeline.geometry.box import Box
 from pipeline.geometry.solids import Body, unite_within
@@ -51,7 +51,7 @@ def unite(mat: Mat, settings: SurfaceSettings, progress: Progress = silent) -> S
         points, triangles, fiber = tidied(
             points, triangles, fiber, mat.radius, _sides(points, mat.slab), settings.smallest_edge
         )
-    return Surface(points, triangles, fiber, mat.radius, mat.slab)
+    return Surface(points, triangles, fiber, mat.radius, mat.slab, fiber_pieces(mat, settings))
 
 
 def fiber_bodies(mat: Mat, settings: SurfaceSettings, progress: Progress = silent) -> tuple[list[Body], Ints]:
@@ -85,6 +85,35 @@ def fiber_bodies(mat: Mat, settings: SurfaceSettings, progress: Progress = silen
                 bodies.append((points + shift, triangles))
                 fiber.append(k)
     return bodies, np.array(fiber, dtype=np.int64)
+
+
+def fiber_pieces(mat: Mat, settings: SurfaceSettings) -> Pieces:
+    """Give the straight pieces of every fiber, and of its periodic images that meet the plan.
+
+    Parameters
+    ----------
+    mat : Mat
+    settings : SurfaceSettings
+
+    Returns
+    -------
+    Pieces
+    """
+    start, end, fiber, flat = [], [], [], []
+    for k in range(mat.fibers):
+        nodes, radius = mat.nodes[mat.first[k] : mat.first[k + 1]], float(mat.radius[k])
+        ends = Ends(settings.caps, settings.caps)
+        if not mat.periodic:
+            nodes, ends = run_through(nodes, radius, mat.slab, settings)
+        around = np.concatenate([nodes - radius, nodes + radius])
+        is_flat = np.zeros((len(nodes) - 1, 2), dtype=bool)
+        is_flat[0, 0], is_flat[-1, 1] = ends.start == "flat", ends.stop == "flat"
+        for shift in _images(around, mat):
+            start.append(nodes[:-1] + shift)
+            end.append(nodes[1:] + shift)
+            fiber.append(np.full(len(nodes) - 1, k))
+            flat.append(is_flat)
+    return Pieces(*(np.concatenate(parts) for parts in (start, end, fiber, flat)))
 
 
 def run_through(nodes: Floats, radius: float, slab: Box, settings: SurfaceSettings) -> tuple[Floats, Ends]:

@@ -2,8 +2,12 @@
 
 from pipeline.data import FaceMesh, FluidDomain
 from pipeline.progress import Progress, silent
-from pipeline.tetmesh.mesh import TetmeshMeasures, tetrahedralize
+from pipeline.tetmesh.finish import TetmeshMeasures, finished
+from pipeline.tetmesh.lattice.lattice import stuffed
 from pipeline.tetmesh.settings import TetmeshSettings
+from pipeline.tetmesh.tetwild import tetrahedralized
+
+_ENGINES = {"lattice": stuffed, "tetwild": tetrahedralized}
 
 
 def fill(domain: FluidDomain, settings: TetmeshSettings, tell: Progress = silent) -> tuple[FaceMesh, TetmeshMeasures]:
@@ -24,5 +28,7 @@ def fill(domain: FluidDomain, settings: TetmeshSettings, tell: Progress = silent
     StageError
         If the engine fails, or the fibers' volume is further off than the settings allow.
     """
-    mesh, measures = tetrahedralize(domain, settings, tell)
+    unit = 2.0 * float(domain.radius.mean())
+    raw = _ENGINES[settings.engine](domain, settings, unit, tell)
+    mesh, measures = finished(raw, domain, settings, unit, tell)
     return mesh.face_mesh(), measures

@@ -6,13 +6,20 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from pipeline.units import Duration, Fraction, Memory, PositiveRatio, Ratio
 
+MEMORY_SHARE = 0.85
+"""Share of the machine's memory that an engine may use where the case names no limit."""
+
 
 class TetmeshSettings(BaseModel):
     """Settings of the stage `tetmesh`; lengths are in mean fiber diameters, so that a case scales as a whole."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    engine: Literal["tetwild"] = Field(default="tetwild", description="The mesher: fTetWild.")
+    engine: Literal["lattice", "tetwild"] = Field(
+        default="lattice",
+        description="The mesher: a body-centered cubic lattice cut by the fibers (quick, the same every time), "
+        "or fTetWild.",
+    )
     edge: PositiveRatio = Field(
         default=0.6, le=20, description="Edge length of the tetrahedra at the fibers, in mean fiber diameters."
     )

@@ -14,7 +14,7 @@ from pipeline.export.openfoam import FiberSlip, fiber_radius, read_openfoam, wri
 from pipeline.export.settings import ExportSettings
 from pipeline.solve import Bed, SolveSettings, solve
 from tests.openfoam import AIR, foam
-from tests.sample_meshes import cylinder, duct
+from tests.sample_meshes import NO_PIECES, cylinder, duct
 
 RADIUS = 0.7e-6
 SLIP = ExportSettings(fiber_wall="slip")
@@ -72,7 +72,15 @@ def test_each_face_finds_its_fiber_s_radius() -> None:
     lower = tets.points[tets.faces].mean(axis=1)[:, 2] < 1.0
     fiber = np.where(tets.patch == 6, np.where(lower, 0, 1), -1)
     domain = FluidDomain(
-        tets.points, tets.faces, tets.patch, tets.patches, fiber, np.array([0.1, 0.2]), tets.slab, tets.slab
+        tets.points,
+        tets.faces,
+        tets.patch,
+        tets.patches,
+        fiber,
+        np.array([0.1, 0.2]),
+        tets.slab,
+        tets.slab,
+        NO_PIECES,
     )
     radius = fiber_radius(mesh, domain)
     patch = mesh.patches[-1]

@@ -15,7 +15,7 @@ from pipeline.quality import QualitySettings, judge
 from pipeline.report import ReportContent
 from pipeline.surface.settings import SurfaceSettings
 from pipeline.surface.union import unite
-from pipeline.tetmesh.mesh import TetmeshMeasures
+from pipeline.tetmesh.finish import TetmeshMeasures
 from tests.sample_meshes import duct
 
 MAT = LayeredSettings(

@@ -52,6 +52,7 @@ def test_meshlab_and_we_see_the_same_self_intersection() -> None:
         np.concatenate([one.fiber, two.fiber]),
         one.radius,
         one.slab,
+        one.pieces,
     )
     ours = len(self_intersections(both.points, both.triangles))
     assert ours > 20

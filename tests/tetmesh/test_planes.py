@@ -6,8 +6,10 @@ import pytest
 from pipeline.data import FIBERS, PATCHES, Floats, FluidDomain, Ints, TetMesh
 from pipeline.geometry.box import Box
 from pipeline.geometry.tets import boundary
-from pipeline.tetmesh.mesh import _at_fibers, _plane_errors
+from pipeline.tetmesh.finish import _at_fibers
 from pipeline.tetmesh.patches import assign
+from pipeline.tetmesh.tetwild import _plane_errors
+from tests.sample_meshes import NO_PIECES
 from tests.tetmesh.boxes import kuhn_box
 
 UNIT = Box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
@@ -27,7 +29,7 @@ def mesh_of(points: Floats, tets: Ints) -> TetMesh:
 
 def domain_of(mesh: TetMesh) -> FluidDomain:
     fiber = np.where(mesh.patch == PATCHES.index(FIBERS), 0, -1)
-    return FluidDomain(mesh.points, mesh.faces, mesh.patch, PATCHES, fiber, np.array([0.1]), UNIT, UNIT)
+    return FluidDomain(mesh.points, mesh.faces, mesh.patch, PATCHES, fiber, np.array([0.1]), UNIT, UNIT, NO_PIECES)
 
 
 def test_whole_planes_have_no_error() -> None:

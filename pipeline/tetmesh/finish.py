@@ -1,33 +1,27 @@
-"""From the air's closed surface to tetrahedra: scale, run fTetWild, find the patches, mend, check."""
+"""Make a mesh fit for a solver: mend its worst cells, fill its crevices, give the fibers their volume, check."""
 
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-import psutil
 
 from pipeline.data import FIBERS, Floats, FluidDomain, Ints, TetMesh
 from pipeline.errors import StageError
 from pipeline.geometry.box import Box
 from pipeline.geometry.tets import boundary, volumes
-from pipeline.geometry.triangles import area_vectors
-from pipeline.progress import Progress, silent
-from pipeline.tetmesh.child import Limits, Meshed, run_child
+from pipeline.progress import Progress
 from pipeline.tetmesh.corners import split_corners, split_longest
 from pipeline.tetmesh.crevices import in_crevice, largest_part
 from pipeline.tetmesh.fit import fitted
-from pipeline.tetmesh.patches import assign, flattened, planes
+from pipeline.tetmesh.patches import assign, planes
+from pipeline.tetmesh.raw import RawMesh
 from pipeline.tetmesh.settings import TetmeshSettings
-from pipeline.tetmesh.size_field import size_field
 
 _SWEEPS = 20  # of mending; the last of them move next to nothing
 _FITS = 2  # the second makes good what mending after the first moved
 _FILLINGS = 8  # rounds of mending and filling crevices
 _PATIENCE = 3  # rounds before cells that cannot be mended are filled though a vertex of theirs could move
 _WALL_LEASH = 0.5  # envelopes that mending may move a vertex of a fiber
-_ATTEMPTS = 3  # of the mesher at keeping the duct's planes; its randomness differs each time
-_PLANE_ERROR = 0.01  # of a plane's area; rounding of the fibers' cuts takes a few thousandths
-_MEMORY_SHARE = 0.85  # of the machine's memory, where the case names no limit
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,17 +55,18 @@ class TetmeshMeasures:
     mesher_peak_memory: int
 
 
-def tetrahedralize(
-    domain: FluidDomain, settings: TetmeshSettings, tell: Progress = silent
+def finished(
+    raw: RawMesh, domain: FluidDomain, settings: TetmeshSettings, unit: float, tell: Progress
 ) -> tuple[TetMesh, TetmeshMeasures]:
-    """Fill the air with tetrahedra.
-
-    The mesh differs a little from run to run: fTetWild draws from the system's own randomness.
+    """Mend what an engine left, restore the fibers' volume, and check both.
 
     Parameters
     ----------
+    raw : RawMesh
     domain : FluidDomain
     settings : TetmeshSettings
+    unit : float [m]
+        Mean fiber diameter.
     tell : Progress
 
     Returns
@@ -81,15 +76,11 @@ def tetrahedralize(
     Raises
     ------
     StageError
-        If the mesher fails, loses part of a plane, or the fibers' volume is further off than the settings allow.
+        If cells without volume remain, or the fibers' volume is further off than the settings allow.
     """
-    # fTetWild compares an area with 1e-8 of a length: only geometry of order one survives that
-    unit = 2.0 * float(domain.radius.mean())
-    middle = 0.5 * (np.array(domain.box.lower) + np.array(domain.box.upper))
-    raw, points, tets = _meshed(domain, settings, unit, middle, tell)
-    raw_error = _volume_error(raw.points * unit + middle, raw.tets, domain)
-
-    tell("mending the worst cells")
+    points, tets = used_points(raw.points, raw.tets)
+    raw_error = _volume_error(points, tets, domain)
+    tell("mending the worst cells", 0.6)
     filled = 0.0
     for _ in range(_FITS):
         points, tets, faulty, tips = _settled(points, tets, domain, _WALL_LEASH * settings.envelope * unit)
@@ -120,72 +111,8 @@ def tetrahedralize(
     return mesh, measures
 
 
-def _meshed(
-    domain: FluidDomain, settings: TetmeshSettings, unit: float, middle: Floats, tell: Progress
-) -> tuple[Meshed, Floats, Ints]:
-    """Run the mesher until it keeps the duct's planes; give what it left, and points and cells with flat planes."""
-    for _ in range(_ATTEMPTS):
-        raw = _run((domain.points - middle) / unit, domain, settings, tell)
-        tell("finding the patches")
-        points, tets = _used(raw.points * unit + middle, raw.tets)
-        faces, _ = boundary(tets)
-        # two envelopes: the mesher bounds the distance to the surface, not the distance along the plane's normal
-        patch = assign(points, faces, domain.box, tolerance=2.0 * settings.envelope * unit)
-        points = flattened(points, faces, patch, domain.box)
-        tets = _without_flat_sides(points, tets, domain.box)
-        # fTetWild may leave triangles of its input out, by chance: a dent in a plane then counts as fiber, which the
-        # fibers' volume, fitted afterwards, does not show, and which raised a drag by half
-        errors = _plane_errors(points, tets, domain)
-        worst = max(errors, key=lambda name: abs(errors[name]))
-        if abs(errors[worst]) <= _PLANE_ERROR:
-            return raw, points, tets
-        tell(f"the mesher lost part of {worst}: meshing again")
-    raise StageError(
-        f"the mesher lost part of the patch {worst} {_ATTEMPTS} times, whose area is off by {errors[worst]:+.2%} "
-        f"(allowed: {_PLANE_ERROR:.0%}); raise tetmesh.passes (now {settings.passes}) or tetmesh.envelope, or lower "
-        "surface.sides"
-    )
-
-
-def _plane_errors(points: Floats, tets: Ints, domain: FluidDomain) -> dict[str, float]:
-    """Relative error of the area of each plane of the duct."""
-    faces, _ = boundary(tets)
-    patch = assign(points, faces, domain.box, tolerance=0.0)
-    return {
-        name: _area(points, faces[patch == number]) / _area(domain.points, domain.triangles[domain.patch == number])
-        - 1.0
-        for number, name in enumerate(domain.patches)
-        if name != FIBERS
-    }
-
-
-def _area(points: Floats, faces: Ints) -> float:
-    return float(np.linalg.norm(area_vectors(points, faces), axis=1).sum())
-
-
-def _run(points: Floats, domain: FluidDomain, settings: TetmeshSettings, tell: Progress) -> Meshed:
-    diagonal = float(np.linalg.norm(np.ptp(points, axis=0)))
-    on_fibers = np.unique(domain.triangles[domain.patch == domain.patches.index(FIBERS)])
-    sizes = size_field(
-        points.min(axis=0), points.max(axis=0), points[on_fibers], settings.edge, settings.growth, settings.largest_edge
-    )
-    options = {
-        # the field can only shorten the mesher's own edge length
-        "edge_length_abs": float(sizes["bg_values"].max()),
-        # relative to the diagonal there, to the fiber here: a longer plenum must not loosen the fibers
-        "epsilon": settings.envelope / diagonal,
-        "stop_energy": settings.stop_energy,
-        "num_opt_iter": settings.passes,
-        "num_threads": 1,  # a second one saves a tenth of the time
-        "vtk_ordering": True,  # else every volume is negative
-        "quiet": False,  # the log is what progress is read from
-        "loglevel": 3,
-    }
-    memory = settings.memory_limit or _MEMORY_SHARE * psutil.virtual_memory().total
-    return run_child(points, domain.triangles, options, sizes, Limits(settings.time_limit, memory), tell)
-
-
-def _used(points: Floats, tets: Ints) -> tuple[Floats, Ints]:
+def used_points(points: Floats, tets: Ints) -> tuple[Floats, Ints]:
+    """Drop the points that no tetrahedron uses: points (k, 3), and the tets (m, 4) by their new numbers."""
     used, renumbered = np.unique(tets, return_inverse=True)
     return points[used], renumbered.reshape(-1, 4)
 
@@ -218,7 +145,7 @@ def _settled(points: Floats, tets: Ints, domain: FluidDomain, wall_leash: float)
         tets, faulty = tets[~crevice], faulty[~crevice]
         if stuck and faulty.any():
             points, tets = split_longest(points, tets, faulty)
-    points, tets = _used(*best[:2])
+    points, tets = used_points(*best[:2])
     return points, tets, best[2], best[3]
 
 
@@ -240,15 +167,6 @@ def _mended(points: Floats, tets: Ints, domain: FluidDomain, wall_leash: float) 
 def _volume_error(points: Floats, tets: Ints, domain: FluidDomain) -> float:
     solid = domain.box.volume - domain.volume
     return float((domain.volume - volumes(points, tets).sum()) / solid)
-
-
-def _without_flat_sides(points: Floats, tets: Ints, box: Box) -> Ints:
-    # a sliver whose four vertices were all within the envelope of one plane is now flat on it: without it the
-    # boundary is the same plane
-    flat = np.zeros(len(tets), dtype=bool)
-    for plane in planes(box):
-        flat |= (points[tets, plane.axis] == plane.value).all(axis=1)
-    return tets[~flat]
 
 
 def _free_axes(points: Floats, box: Box) -> Floats:

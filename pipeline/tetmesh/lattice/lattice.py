@@ -1,0 +1,115 @@
+"""The air in tetrahedra from a body-centered cubic lattice that the fibers' surface cuts."""
+
+import time
+
+import numpy as np
+import psutil
+
+from pipeline.data import FluidDomain, Ints
+from pipeline.errors import StageError
+from pipeline.machine import peak_memory
+from pipeline.progress import Progress
+from pipeline.tetmesh.raw import RawMesh
+from pipeline.tetmesh.settings import MEMORY_SHARE, TetmeshSettings
+
+_SNAP = 0.25  # cube edges between a vertex and the surface up to which the vertex moves onto it
+_LEASH = 2.0  # distances from the surface that a vertex may move, when it has to stay on a plane of the duct
+_LEVELS = 2  # doublings of the cubes' edge
+_BYTES = 40  # of memory for each lattice point, when the tetrahedra are made of a lattice that is mostly at its finest
+
+
+def stuffed(domain: FluidDomain, settings: TetmeshSettings, unit: float, tell: Progress) -> RawMesh:
+    """Fill the air with tetrahedra, whose vertices at the fibers lie on the true cylinders.
+
+    Cubes at the fibers have the edge `settings.edge`; away from them it doubles where `settings.growth` and
+    `settings.largest_edge` allow. Vertices near the surface move onto it, tetrahedra that still cross it are cut, and
+    what lies in the air is kept. The same case always gives the same mesh.
+
+    Parameters
+    ----------
+    domain : FluidDomain
+    settings : TetmeshSettings
+    unit : float [m]
+        Mean fiber diameter.
+    tell : Progress
+
+    Returns
+    -------
+    RawMesh
+
+    Raises
+    ------
+    StageError
+        If the lattice does not fit into memory.
+
+    Notes
+    -----
+    After Labelle & Shewchuk, Isosurface Stuffing, ACM Transactions on Graphics 26:57 (2007), with the exact distance
+    to the fibers in place of a sampled one, and vertices moved to the nearest point of the surface instead of along an
+    edge: no edge is then cut nearer to its end than a vertex may move.
+    """
+    # numba takes half a second to load, which no refused case file should cost
+    from pipeline.geometry.fibers import FiberDistance
+    from pipeline.tetmesh.lattice.cubes import lattice_tets
+    from pipeline.tetmesh.lattice.octree import octree
+    from pipeline.tetmesh.lattice.stuffing import crossed_edges, kept
+
+    began = time.monotonic()
+    lower, upper = np.array(domain.box.lower), np.array(domain.box.upper)
+    size = (upper - lower) / unit
+    counts = np.maximum(1, np.rint(size / settings.edge)).astype(np.int64)
+    _check_memory(counts, settings)
+    edge = float((size / counts).max())
+    sizes = _distances(edge, settings)
+    pieces = domain.pieces
+    tell("measuring the distance to the fibers")
+    distance = FiberDistance.about(
+        (pieces.start - lower) / unit,
+        (pieces.end - lower) / unit,
+        domain.radius[pieces.fiber] / unit,
+        pieces.flat,
+        np.zeros(3),
+        size,
+        (2 * int(counts[0]), 2 * int(counts[1]), 2 * int(counts[2])),
+        max(sizes, default=0.0) + 2.0 * edge,
+    )
+    tell("filling the duct with cubes", 0.2)
+    tree = octree(distance.on_lattice[1::2, 1::2, 1::2].astype(np.float64), sizes, edge)
+    places, tets = lattice_tets(tree)
+
+    tell(f"cutting the fibers out of {len(tets)} tetrahedra", 0.4)
+    plane = np.where(places == 0, -1, np.where(places == 2 * counts, 1, 0)).astype(np.int8)
+    points = places * (size / (2 * counts))
+    value = distance.on_lattice[tuple(places.T)].astype(np.float64)
+    near = np.flatnonzero(np.abs(value) < _SNAP * edge)
+    points[near], done = distance.snapped(points[near], (plane[near] == 0).astype(np.float64), _LEASH * _SNAP * edge)
+    side = np.sign(value).astype(np.int8)
+    side[near] = np.where(done, 0, np.sign(distance.at(points[near])))
+    edges = crossed_edges(tets, side)
+    crossings = distance.crossings(points[edges[:, 0]], points[edges[:, 1]])
+    points = np.concatenate([points, crossings])
+    ends = plane[edges[:, 0]], plane[edges[:, 1]]
+    plane = np.concatenate([plane, np.where(ends[0] == ends[1], ends[0], np.int8(0))])
+    in_meters = np.where(plane < 0, lower, np.where(plane > 0, upper, points * unit + lower))
+    found = kept(in_meters, tets, side, edges, value)
+    return RawMesh(in_meters, found, time.monotonic() - began, peak_memory())
+
+
+def _distances(edge: float, settings: TetmeshSettings) -> tuple[float, ...]:
+    """Distance from the fibers from which on the edge may be 2, 4, ... times that at the fibers."""
+    if settings.growth == 0.0:
+        return ()
+    factors = [1 << level for level in range(1, _LEVELS + 1)]
+    return tuple(edge * (f - 1) / settings.growth for f in factors if f * edge <= 1.01 * settings.largest_edge)
+
+
+def _check_memory(counts: Ints, settings: TetmeshSettings) -> None:
+    limit = settings.memory_limit or MEMORY_SHARE * psutil.virtual_memory().total
+    points = float(np.prod(2.0 * counts + 1.0))
+    if _BYTES * points > limit:
+        x, y, z = counts.tolist()
+        raise StageError(
+            f"a lattice of {x} x {y} x {z} cubes takes about {_BYTES * points / 2**20:,.0f} MiB of memory, over "
+            f"the limit of {limit / 2**20:,.0f} MiB; raise tetmesh.edge (now {settings.edge:g} diameters) or "
+            "tetmesh.memory_limit"
+        )
