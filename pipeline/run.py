@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from pipeline import machine, store
+from pipeline import store
 from pipeline.analytics import compare, predictor
 from pipeline.analytics.growth import Predictor
 from pipeline.analytics.pressure_models import pressure_model
