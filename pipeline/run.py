@@ -19,6 +19,7 @@ from pipeline.errors import StageError
 from pipeline.export import FiberSlip, export, fiber_radius
 from pipeline.export.openfoam.dictionaries import SOLVER
 from pipeline.geometry.tets import volume_between
+from pipeline.machine import peak_memory
 from pipeline.mat import ArraySettings, BoxSettings, FileSettings, LayeredSettings, MatMeasures, generate, measure
 from pipeline.mat.exchange import write_fibers
 from pipeline.mat.tally import report_stop
@@ -422,7 +423,7 @@ def _step(stage: Stage, run: Run, again: bool, tell: Progress) -> Outcome:
     with store.side_folder(folder) as side:
         counts = stage.make(run, side, tell)
         seconds = time.perf_counter() - began
-        cost = {"seconds": seconds, "peak_memory": machine.peak_memory()}
+        cost = {"seconds": seconds, "peak_memory": peak_memory()}
         store.write_manifest(side, {"stage": stage.name, "key": key, **identity, **cost, "counts": counts})
     return Outcome(stage.name, folder, "made", seconds, counts)
 

@@ -48,7 +48,7 @@ def examine() -> list[Finding]:
     findings += [
         _openfoam(),
         _programs("snappyHexMesh", (*PROGRAMS, *PARALLEL), 'only tetmesh.engine = "snappy" needs it', INSTALL),
-        _programs("MPI", ("mpirun",), "only solve.cores and snappy's tetmesh.cores above 1 need it", _INSTALL_MPI),
+        _programs("MPI", ("mpirun",), "only more than one core needs it", _INSTALL_MPI),
         _opengl(),
     ]
     memory = psutil.virtual_memory()

@@ -29,7 +29,7 @@ class TetmeshSettings(BaseModel):
         "have half of it and the same volume.",
     )
     growth: Ratio = Field(
-        default=0.4,
+        default=1.0,
         le=3,
         description="How much longer the edges become per distance from the fibers; 0 for the same length everywhere.",
     )
