@@ -125,8 +125,11 @@ def test_a_damaged_file_is_made_again(smoke: Run, tmp_path: Path) -> None:
 
 def test_a_killed_run_leaves_whole_stages_and_goes_on(tmp_path: Path) -> None:
     folder = tmp_path / "run"
+    # fTetWild takes seconds, enough to be killed in
     child = subprocess.Popen(
-        command("run", SMOKE, "--out", folder), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        command("run", SMOKE, "--out", folder, "--set", "tetmesh.engine=tetwild"),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
     )
     deadline = time.monotonic() + 120
     while not (folder / "enclosure").exists() and time.monotonic() < deadline:

@@ -114,6 +114,28 @@ def _distances(points: Floats, field: _Field) -> Floats:
 
 
 @compiled
+def _nearest(points: Floats, field: _Field) -> tuple[Floats, npt.NDArray[np.int64]]:
+    start, end, radius, flat, origin, step, nearest, reach = field
+    result = np.full(len(points), reach)
+    which = np.full(len(points), -1)
+    for n in range(len(points)):
+        x, y, z = points[n, 0], points[n, 1], points[n, 2]
+        ci = round((x - origin[0]) / step[0])
+        cj = round((y - origin[1]) / step[1])
+        ck = round((z - origin[2]) / step[2])
+        for i in range(max(0, ci - 1), min(nearest.shape[0], ci + 2)):
+            for j in range(max(0, cj - 1), min(nearest.shape[1], cj + 2)):
+                for k in range(max(0, ck - 1), min(nearest.shape[2], ck + 2)):
+                    p = nearest[i, j, k]
+                    if p < 0 or p == which[n]:
+                        continue
+                    found = _to_piece(x, y, z, start[p], end[p], radius[p], flat[p, 0], flat[p, 1])
+                    if found < result[n]:
+                        result[n], which[n] = found, p
+    return result, which
+
+
+@compiled
 def _snapped(points: Floats, free: Floats, leash: float, field: _Field) -> tuple[Floats, npt.NDArray[np.bool_]]:
     result = points.copy()
     done = np.zeros(len(points), np.bool_)
@@ -179,10 +201,13 @@ class FiberDistance:
         What the compiled functions take.
     on_lattice : float32 array
         The distance at every lattice point.
+    source : (pieces,) int array
+        Which of the pieces given each of the field's pieces is a part of.
     """
 
     field: _Field
     on_lattice: npt.NDArray[np.float32]
+    source: npt.NDArray[np.int64]
 
     @classmethod
     def about(
@@ -212,21 +237,26 @@ class FiberDistance:
         reach : float
             Distances beyond it are not told apart.
         """
-        start, end, radius, flat = _short(start, end, radius, flat)
+        start, end, radius, flat, source = _short(start, end, radius, flat)
         step = (upper - lower) / np.array(counts)
         shape = (counts[0] + 1, counts[1] + 1, counts[2] + 1)
         distance, nearest = _lattice_distance(start, end, radius, flat, lower, step, shape, reach)
-        return cls((start, end, radius, flat, lower, step, nearest, reach), distance)
+        return cls((start, end, radius, flat, lower, step, nearest, reach), distance, source)
 
     def thicker(self, by: float) -> "FiberDistance":
         """Give the distance to fibers of larger radius; `on_lattice` stays that of the old ones."""
         start, end, radius, flat, lower, step, nearest, reach = self.field
-        return FiberDistance((start, end, radius + by, flat, lower, step, nearest, reach), self.on_lattice)
+        return FiberDistance((start, end, radius + by, flat, lower, step, nearest, reach), self.on_lattice, self.source)
 
     def at(self, points: Floats) -> Floats:
         """Distance at each point, (n,) array."""
         found: Floats = _distances(points, self.field)
         return found
+
+    def with_piece(self, points: Floats) -> tuple[Floats, npt.NDArray[np.int64]]:
+        """Distance at each point, (n,) array, and the field's piece it is the distance to, -1 beyond reach."""
+        found, piece = _nearest(points, self.field)
+        return found, piece
 
     def snapped(self, points: Floats, free: Floats, leash: float) -> tuple[Floats, npt.NDArray[np.bool_]]:
         """Move points onto the surface along the gradient of the distance.
@@ -259,11 +289,11 @@ _LENGTH = 4.0  # of a short piece in radii: a long one would be looked for all o
 
 def _short(
     start: Floats, end: Floats, radius: Floats, flat: npt.NDArray[np.bool_]
-) -> tuple[Floats, Floats, Floats, npt.NDArray[np.bool_]]:
+) -> tuple[Floats, Floats, Floats, npt.NDArray[np.bool_], npt.NDArray[np.int64]]:
     parts = np.maximum(1, np.ceil(np.linalg.norm(end - start, axis=1) / (_LENGTH * radius))).astype(np.int64)
     piece = np.repeat(np.arange(len(start)), parts)
     number = np.arange(len(piece)) - np.repeat(np.cumsum(parts) - parts, parts)
     line = (end - start)[piece]
     one, two = (start[piece] + (share / parts[piece])[:, None] * line for share in (number, number + 1))
     ends = np.stack([flat[piece, 0] & (number == 0), flat[piece, 1] & (number == parts[piece] - 1)], axis=1)
-    return one, two, radius[piece], ends
+    return one, two, radius[piece], ends, piece

@@ -6,6 +6,7 @@ import platform
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 from pydantic import BaseModel
 
 from pipeline.analytics import comparison_tables, filter_of_mat, predict, prediction_tables
@@ -17,6 +18,7 @@ from pipeline.quality.kinds import kinds_in_words
 from pipeline.report import charts, words
 from pipeline.report.content import ReportContent
 from pipeline.report.quality_section import quality_section
+from pipeline.tetmesh.fidelity import Fidelity
 
 
 def sections(content: ReportContent, progress: Progress) -> dict[str, Any]:
@@ -116,9 +118,27 @@ def _mesh(content: ReportContent) -> dict[str, Any] | None:
                 f"{made.volume_error:+z.2%}; before mending {made.raw_volume_error:+z.2%}",
             ),
             ("air given to the fibers in crevices", f"{made.filled_volume:.3%} of the air"),
+            *_walls(made.fidelity),
             ("mesher", f"{made.mesher_seconds:.3g} s, at most {made.mesher_peak_memory / 2**20:,.0f} MiB"),
         ]
     return {"facts": facts}
+
+
+def _walls(found: Fidelity | None) -> list[tuple[str, str]]:
+    if found is None:
+        return []
+    errors = np.array(found.radius_error)
+    return [
+        (
+            "walls off the true fibers",
+            f"{found.mean_deviation:.3f} diameters on average, 99 % within {found.typical_deviation:.2f}, "
+            f"all within {found.largest_deviation:.2f} (where fibers meet)",
+        ),
+        (
+            "radius of single fibers",
+            f"{errors.mean():+z.2%} on average, from {errors.min():+z.2%} to {errors.max():+z.2%}",
+        ),
+    ]
 
 
 def _comparison(content: ReportContent) -> dict[str, Any] | None:

@@ -1,9 +1,12 @@
 """Fill the air with cells by the engine that the case names."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from pipeline.data import FaceMesh, FluidDomain
+from pipeline.errors import StageError
 from pipeline.progress import Progress, silent
+from pipeline.tetmesh.fidelity import fidelity
 from pipeline.tetmesh.finish import TetmeshMeasures, finished
 from pipeline.tetmesh.lattice.lattice import stuffed
 from pipeline.tetmesh.settings import TetmeshSettings
@@ -34,8 +37,23 @@ def fill(
     Raises
     ------
     StageError
-        If the engine fails, or the fibers' volume is further off than the settings allow.
+        If the engine fails, or the fibers' volume or their walls are further off than the settings allow.
     """
+    mesh, measures = _filled(domain, settings, tell, folder)
+    tell("measuring the walls", 0.95)
+    found = fidelity(mesh, domain)
+    if found.typical_deviation > settings.deviation:
+        raise StageError(
+            f"a hundredth of the fibers' walls is farther than {found.typical_deviation:.3g} diameters from the true "
+            f"fibers, allowed is {settings.deviation:g}; lower tetmesh.edge (now {settings.edge:g} diameters) or raise "
+            "tetmesh.deviation"
+        )
+    return mesh, replace(measures, fidelity=found)
+
+
+def _filled(
+    domain: FluidDomain, settings: TetmeshSettings, tell: Progress, folder: Path | None
+) -> tuple[FaceMesh, TetmeshMeasures]:
     if settings.engine == "snappy":
         return snapped(domain, settings, tell, folder / CASE if folder is not None else None)
     unit = 2.0 * float(domain.radius.mean())

@@ -8,6 +8,7 @@ from pipeline.data import FIBERS, Floats, FluidDomain, Ints, TetMesh
 from pipeline.errors import StageError
 from pipeline.geometry.tets import boundary, volumes
 from pipeline.progress import Progress
+from pipeline.tetmesh.fidelity import Fidelity
 from pipeline.tetmesh.fit import fitted
 from pipeline.tetmesh.patches import assign
 from pipeline.tetmesh.raw import RawMesh
@@ -36,6 +37,8 @@ class TetmeshMeasures:
         Cells still beyond what mending aims at, a little inside the usual limits.
     mesher_seconds : float [s]
     mesher_peak_memory : int [byte]
+    fidelity : Fidelity, optional
+        How far the walls stand off the true fibers; every finished stage has it.
     """
 
     points: int
@@ -47,6 +50,7 @@ class TetmeshMeasures:
     faulty_cells: int
     mesher_seconds: float
     mesher_peak_memory: int
+    fidelity: Fidelity | None = None
 
 
 def finished(

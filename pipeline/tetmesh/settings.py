@@ -56,6 +56,11 @@ class TetmeshSettings(BaseModel):
     volume_error: Fraction = Field(
         default=0.02, description="Largest error of the fibers' volume against the surface that is accepted."
     )
+    deviation: PositiveRatio = Field(
+        default=0.5,
+        description="Distance from the true fibers within which 99 % of the walls' area has to lie, in mean fiber "
+        "diameters.",
+    )
     time_limit: Duration = Field(default=3600.0, description="The mesher is ended after this time.")
     memory_limit: Memory | None = Field(
         default=None, description="The mesher is ended above this much memory; if left out, 85 % of the machine's."

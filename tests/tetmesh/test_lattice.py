@@ -1,6 +1,7 @@
 """The lattice that the fibers cut: it fills the duct, fits across its levels, and meets the true cylinders."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from pipeline.progress import silent
 from pipeline.quality import judge
 from pipeline.surface.settings import SurfaceSettings
 from pipeline.surface.union import unite
+from pipeline.tetmesh.fidelity import fidelity
 from pipeline.tetmesh.fill import fill
 from pipeline.tetmesh.lattice.cubes import lattice_tets
 from pipeline.tetmesh.lattice.lattice import stuffed
@@ -139,6 +141,26 @@ def test_the_fibers_volume_is_kept() -> None:
     assert abs(measures.raw_volume_error) < 0.01
     assert abs(measures.volume_error) < 1e-6
     assert mesh.volume == pytest.approx(domain.volume, rel=1e-6)
+
+
+def test_the_walls_distance_from_the_true_fibers_is_measured() -> None:
+    domain, settings = across(0.5)
+    mesh, measures = fill(domain, settings)
+    found = measures.fidelity
+    assert found is not None
+    assert found == fidelity(mesh, domain)
+    (error,) = found.radius_error
+    assert abs(error) < 0.01  # the volume is right, so the radius is
+    assert 0 < found.mean_deviation < found.typical_deviation < found.largest_deviation < 0.1
+    # fibers that are thicker by a tenth leave the same walls inside by a tenth
+    thick = replace(domain, radius=1.1 * domain.radius)
+    assert fidelity(mesh, thick).radius_error[0] == pytest.approx((1.0 + error) / 1.1 - 1.0, abs=1e-3)
+
+
+def test_walls_farther_off_than_allowed_are_refused_with_what_to_do() -> None:
+    domain, _ = across(0.5)
+    with pytest.raises(StageError, match=r"allowed is 0.001; lower tetmesh.edge"):
+        fill(domain, TetmeshSettings(edge=0.5, deviation=0.001))
 
 
 def test_one_case_gives_one_mesh() -> None:

@@ -155,7 +155,7 @@ def test_an_option_of_another_engine_is_refused() -> None:
 
 def test_blocks_are_as_large_as_the_tetrahedra_asked_for() -> None:
     lower, upper = np.zeros(3), np.array([12.0, 12.0, 24.0])
-    found = layout(lower, upper, np.array([[6.0, 6.0, 12.0]]), TetmeshSettings(engine="snappy"))
+    found = layout(lower, upper, np.array([[6.0, 6.0, 12.0]]), TetmeshSettings(engine="snappy", growth=0.4))
     # edge 0.6 -> cubes of 0.3; the largest edge, 3.0, allows two halvings: 1.2 -> 0.6 -> 0.3
     assert (found.counts, found.level, found.buffer) == ((10, 10, 20), 2, 5)
     even = layout(lower, upper, np.array([[6.0, 6.0, 12.0]]), TetmeshSettings(engine="snappy", growth=0.0))
