@@ -114,10 +114,14 @@ def _with_midpoints(points: Floats, tets: Ints, edges: Ints) -> tuple[Floats, In
     keys = np.unique(edges[:, 0] * count + edges[:, 1])
     of_tets = np.sort(tets[:, _EDGES], axis=2)
     tet_keys = of_tets[..., 0] * count + of_tets[..., 1]
-    wanted = np.isin(tet_keys, keys)
-    # a cell takes one split a round: of several edges the lowest key goes first, the others wait
-    first = np.where(wanted, tet_keys, np.iinfo(np.int64).max).min(axis=1, keepdims=True)
-    keys = np.setdiff1d(keys, tet_keys[wanted & (tet_keys != first)])
+    place = np.minimum(np.searchsorted(keys, tet_keys), len(keys) - 1)
+    wanted = keys[place] == tet_keys
+    # a cell takes one split a round, and of several edges one goes first, the others wait: in an order by chance, since
+    # along a rim edges with ascending numbers would wait for each other one by one
+    turn = np.random.default_rng(0).permutation(len(keys))
+    turns = np.where(wanted, turn[place], len(keys))
+    first = turns.min(axis=1, keepdims=True)
+    keys = np.setdiff1d(keys, tet_keys[wanted & (turns != first)])
     hit = np.isin(tet_keys, keys)
     cell, edge = np.nonzero(hit)
     middle = count + np.searchsorted(keys, tet_keys[cell, edge])

@@ -79,6 +79,7 @@ def finished(
     points, tets = used_points(raw.points, raw.tets)
     raw_error = _volume_error(points, tets, domain)
     tell("mending the worst cells", 0.6)
+    limits = np.array(domain.box.lower), np.array(domain.box.upper)
     filled = 0.0
     for _ in range(_FITS):
         points, tets, faulty, tips = settled(points, tets, domain, _WALL_LEASH * settings.envelope * unit)
@@ -86,7 +87,7 @@ def finished(
         points, tets = used_points(points, tets)
         faces, _ = boundary(tets)
         walls = faces[assign(points, faces, domain.box, tolerance=0.0) == domain.patches.index(FIBERS)]
-        points = fitted(points, tets, walls, free_axes(points, domain.box), domain.volume)
+        points = fitted(points, tets, walls, free_axes(points, domain.box), domain.volume, limits)
     _check_volumes(points, tets)
 
     faces, _ = boundary(tets)

@@ -171,6 +171,8 @@ def _move(
     free: Floats,
     directions: Floats,
     smallest: float,
+    low: Floats,
+    high: Floats,
 ) -> Ints:
     """Move the vertices one by one; give those that moved."""
     moved = np.zeros(len(vertices), dtype=np.bool_)
@@ -191,7 +193,7 @@ def _move(
         for trial in range(len(directions)):
             points[vertex] = place + reach * free[vertex] * directions[trial]
             stray = points[vertex] - homes[vertex]
-            if (stray**2).sum() > leash[vertex] ** 2:
+            if (stray**2).sum() > leash[vertex] ** 2 or (points[vertex] < low).any() or (points[vertex] > high).any():
                 continue
             cost = _cost_around(points, tets, across, first, cells, vertex, smallest, best)
             if cost < best:
@@ -228,7 +230,7 @@ def smallest_volume(points: Floats, tets: Ints) -> float:
 
 
 def mended(
-    points: Floats, tets: Ints, free: Floats, leash: Floats, sweeps: int, seed: int = 0
+    points: Floats, tets: Ints, free: Floats, leash: Floats, sweeps: int, limits: tuple[Floats, Floats], seed: int = 0
 ) -> tuple[Floats, npt.NDArray[np.bool_]]:
     """Move vertices until no face is beyond the aim, or no move helps any more.
 
@@ -243,6 +245,8 @@ def mended(
         How far each vertex may move in all: infinity inside, within the envelope on the fibers.
     sweeps : int
         Most rounds over the vertices around faulty faces.
+    limits : tuple of two (3,) arrays
+        Lowest and highest coordinates of the box that no vertex may leave.
     seed : int
         Of the directions tried.
 
@@ -265,7 +269,7 @@ def mended(
         directions = rng.standard_normal((_TRIALS, 3))
         directions /= np.linalg.norm(directions, axis=1, keepdims=True)
         vertices = np.unique(tets[found > 1.0])
-        moved = _move(result, tets, across, first, cells, vertices, homes, leash, free, directions, smallest)
+        moved = _move(result, tets, across, first, cells, vertices, homes, leash, free, directions, smallest, *limits)
         if len(moved) == 0:
             break
         touched = np.unique(np.concatenate([cells[first[vertex] : first[vertex + 1]] for vertex in moved]))

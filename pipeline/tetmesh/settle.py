@@ -78,6 +78,7 @@ def _settled_here(
     filled, fewest = 0.0, len(tets) ** 2
     best = (points, tets, filled)
     fixed = np.unique(seam)
+    limits = np.array(domain.box.lower), np.array(domain.box.upper)
     for filling in range(_FILLINGS):
         points, tets = split_corners(points, tets, seam)
         walls, at_wall = true_boundary(tets, seam)
@@ -86,7 +87,7 @@ def _settled_here(
         leash[fibers] = wall_leash
         # the cells behind the seam do not know what happens here
         leash[tets[_with_three(tets, fixed, len(points))]] = 0.0
-        points, faulty = mended(points, tets, free_axes(points, domain.box), leash, _SWEEPS)
+        points, faulty = mended(points, tets, free_axes(points, domain.box), leash, _SWEEPS, limits)
         # a flat cell is worse than any number of merely bad ones
         count = int(faulty.sum()) + len(tets) * int((volumes(points, tets) <= 0.0).sum())
         if count < fewest:

@@ -11,6 +11,8 @@ from pipeline.tetmesh.fit import fitted
 from pipeline.tetmesh.mend import mended
 from tests.tetmesh.boxes import kuhn_box
 
+CUBE = np.zeros(3), np.ones(3)
+
 
 def shaken(points: Floats, free: npt.NDArray[np.bool_], by: float, seed: int) -> Floats:
     moved = points.copy()
@@ -33,7 +35,7 @@ def test_inverted_cells_are_turned_right_and_the_boundary_stays(seed: int) -> No
     bad = shaken(points, inside(points), 0.12, seed)
     assert (volumes(bad, tets) <= 0).any()  # or there would be nothing to mend
     free, leash = free_to_move(points)
-    good, faulty = mended(bad, tets, free, leash, sweeps=60)
+    good, faulty = mended(bad, tets, free, leash, 60, CUBE)
     assert (volumes(good, tets) > 0).all()
     assert faulty.sum() < 0.02 * len(tets)
     np.testing.assert_array_equal(good[~inside(points)], points[~inside(points)])
@@ -43,7 +45,7 @@ def test_inverted_cells_are_turned_right_and_the_boundary_stays(seed: int) -> No
 def test_a_good_mesh_is_left_alone() -> None:
     points, tets = kuhn_box(3)
     free, leash = free_to_move(points)
-    same, faulty = mended(points, tets, free, leash, sweeps=5)
+    same, faulty = mended(points, tets, free, leash, 5, CUBE)
     np.testing.assert_array_equal(same, points)
     assert not faulty.any()
 
@@ -52,7 +54,7 @@ def test_no_vertex_strays_farther_than_its_leash() -> None:
     points, tets = kuhn_box(4)
     bad = shaken(points, inside(points), 0.1, 1)
     free, _ = free_to_move(points)
-    moved, _ = mended(bad, tets, free, np.full(len(points), 0.01), sweeps=10)
+    moved, _ = mended(bad, tets, free, np.full(len(points), 0.01), 10, CUBE)
     distance = np.linalg.norm(moved - bad, axis=1)
     assert 0 < distance.max() <= 0.01 * (1 + 1e-12)
 
@@ -85,10 +87,27 @@ def test_fitting_moves_walls_to_the_wanted_volume_and_not_across_the_planes() ->
     for axis in (0, 1):
         on_side = (points[:, axis] == 0) | (points[:, axis] == 1)
         free[on_side, axis] = 0.0
-    moved = fitted(points, tets, walls, free, 1.02)
+    moved = fitted(points, tets, walls, free, 1.02, (CUBE[0], CUBE[1] + 0.1))
     assert volumes(moved, tets).sum() == pytest.approx(1.02, rel=1e-6)
     np.testing.assert_array_equal(moved[:, :2] == 0, points[:, :2] == 0)
     np.testing.assert_array_equal(moved[:, :2] == 1, points[:, :2] == 1)
+
+
+def test_no_vertex_of_a_wall_leaves_the_duct() -> None:
+    points, tets = kuhn_box(4)
+    faces, _ = boundary(tets)
+    walls = faces[(points[faces, 2] == 1.0).all(axis=1)]
+    moved = fitted(points, tets, walls, np.ones_like(points), 1.02, CUBE)
+    np.testing.assert_array_equal(moved, points)
+
+
+def test_a_long_row_of_corners_is_split_whatever_its_numbers() -> None:
+    # a row of cubes: all its cells lie on the boundary with two faces or more, and their edges ascend along it
+    points, tets = kuhn_box(40)
+    row = (points[tets][:, :, :2].mean(axis=1) < 1 / 40).all(axis=1)
+    more_points, more_tets = split_corners(points, tets[row])
+    assert np.bincount(boundary(more_tets)[1]).max() == 1
+    assert volumes(more_points, more_tets).sum() == pytest.approx(40 / 40**3, rel=1e-12)
 
 
 def test_only_cells_in_the_tip_of_a_wedge_are_filled_at_first() -> None:

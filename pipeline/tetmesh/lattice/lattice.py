@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 _SNAP = 0.25  # cube edges between a vertex and the surface up to which the vertex moves onto it
 _LEASH = 2.0  # distances from the surface that a vertex may move, when it has to stay on a plane of the duct
 _OFFSETS = 2  # rounds: the second finds the fibers' volume right to some thousandths
+_LEAST = 1e-3  # volume of a tetrahedron whose vertices have moved, in smallest cubes; there are 12 to a cube
 _LEVELS = 2  # doublings of the cubes' edge
 _BYTES = 40  # of memory for each lattice point, when the tetrahedra are made of a lattice that is mostly at its finest
 
@@ -133,9 +134,24 @@ def _cut(lattice: Lattice, value: Floats, distance: "FiberDistance") -> tuple[Fl
     points, plane = lattice.points.copy(), lattice.plane
     near = np.flatnonzero(np.abs(value) < _SNAP * lattice.edge)
     free = (plane[near] == 0).astype(np.float64)
-    points[near], done = distance.snapped(points[near], free, _LEASH * _SNAP * lattice.edge)
+    moved, done = distance.snapped(points[near], free, _LEASH * _SNAP * lattice.edge)
+    on_surface = np.zeros(len(points), dtype=bool)
+    on_surface[near] = done
+    places = points.copy()
+    places[near] = moved
+    touched = lattice.tets[on_surface[lattice.tets].any(axis=1)]
+    least = _LEAST * lattice.edge**3
+    while True:
+        # on a plane of the duct a vertex may have to go far to meet the surface, and turn a tetrahedron inside out
+        flat = touched[volumes(places, touched) < least]
+        back = np.unique(flat[on_surface[flat]])
+        if not len(back):
+            break
+        on_surface[back] = False
+        places[back] = points[back]
+    points = places
     side = np.sign(value).astype(np.int8)
-    side[near] = np.where(done, 0, np.sign(distance.at(points[near])))
+    side[near] = np.where(on_surface[near], 0, np.where(distance.at(points[near]) > 0.0, 1, -1))
     edges = crossed_edges(lattice.tets, side)
     crossings = distance.crossings(points[edges[:, 0]], points[edges[:, 1]])
     points = np.concatenate([points, crossings])

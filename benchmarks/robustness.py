@@ -1,0 +1,98 @@
+"""Many small mats through the mesher: `python -m benchmarks.robustness [SEEDS]` prints a table of what became of them.
+
+Each kind of mat goes with each way of contact and each seed; engine and edge are the defaults.
+"""
+
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from pipeline.enclosure.duct import enclose
+from pipeline.enclosure.settings import EnclosureSettings
+from pipeline.errors import FibertwinError
+from pipeline.mat import LayeredSettings, generate
+from pipeline.quality import judge
+from pipeline.surface.settings import SurfaceSettings
+from pipeline.surface.union import unite
+from pipeline.tetmesh.fill import fill
+from pipeline.tetmesh.settings import TetmeshSettings
+
+SIDE, DIAMETER = 8e-6, 1.4e-6
+MIXTURE = {"distribution": "mixture", "parts": [
+    {"weight": 0.6, "diameter": {"distribution": "constant", "diameter": 0.9e-6}},
+    {"weight": 0.4, "diameter": {"distribution": "constant", "diameter": 1.8e-6}},
+]}  # fmt: skip
+KINDS: dict[str, dict[str, object]] = {
+    "one diameter, slope 0": {"relaxation_slope": 0.0},
+    "one diameter, slope 0.15": {"relaxation_slope": 0.15},
+    "one diameter, slope 0.25": {"relaxation_slope": 0.25},
+    "two diameters, slope 0.15": {"fiber_diameter": MIXTURE, "relaxation_slope": 0.15},
+    "broken ends, slope 0.15": {"relaxation_slope": 0.15, "broken": 0.5},
+}
+CONTACTS = ("paper", "clear")
+
+
+@dataclass(frozen=True, slots=True)
+class Fate:
+    """What became of one mat."""
+
+    verdict: str
+    seconds: float
+    cells: int = 0
+    angle: float = 0.0
+    skewness: float = 0.0
+    filled: float = 0.0
+    reason: str = ""
+
+
+def mat_settings(kind: str, contact: str, seed: int) -> LayeredSettings:
+    """Give the settings of one mat: a face of some six diameters, covered 1.2 times."""
+    content = {"side": SIDE, "fiber_diameter": DIAMETER, "contact": contact, "seed": seed, "stop": {"coverage": 1.2}}
+    return LayeredSettings.model_validate({"generator": "layered", **content, **KINDS[kind]})
+
+
+def fate(kind: str, contact: str, seed: int, settings: TetmeshSettings | None = None) -> Fate:
+    """Grow, unite, enclose, mesh and judge one mat; what a user could mend is a verdict of its own."""
+    began = time.process_time()
+    try:
+        surface = unite(generate(mat_settings(kind, contact, seed)), SurfaceSettings())
+        domain = enclose(surface, EnclosureSettings(inlet=4e-6, outlet=4e-6))
+        mesh, measures = fill(domain, settings or TetmeshSettings())
+    except FibertwinError as problem:
+        return Fate("refused", time.process_time() - began, reason=str(problem))
+    report = judge(mesh)
+    metrics = report.metrics
+    return Fate(
+        report.verdict, time.process_time() - began, mesh.cells, metrics["non_orthogonality"].max,
+        metrics["skewness"].max, measures.filled_volume, "; ".join(report.reasons),
+    )  # fmt: skip
+
+
+def fates(seeds: int) -> Iterator[tuple[str, str, list[Fate]]]:
+    """Give what became of the mats of each kind and contact."""
+    for kind in KINDS:
+        for contact in CONTACTS:
+            yield kind, contact, [fate(kind, contact, seed) for seed in range(seeds)]
+
+
+def main(seeds: int) -> None:
+    """Print the table, and the reason of each that did not pass."""
+    print("| mat | contact | mats | pass | warn | fail | refused | worst angle | worst skewness | air filled | time |")
+    print("|---|---|---|---|---|---|---|---|---|---|---|")
+    for kind, contact, found in fates(seeds):
+        counts = " | ".join(
+            str(sum(each.verdict == verdict for each in found)) for verdict in ("pass", "warn", "fail", "refused")
+        )
+        print(
+            f"| {kind} | {contact} | {len(found)} | {counts} | {max(each.angle for each in found):.1f} | "
+            f"{max(each.skewness for each in found):.2f} | {max(each.filled for each in found):.1e} | "
+            f"{sum(each.seconds for each in found) / len(found):.2f} s |", flush=True,
+        )  # fmt: skip
+        for seed, each in enumerate(found):
+            if each.verdict != "pass":
+                print(f"  seed {seed}: {each.verdict}: {each.reason}", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 100)
