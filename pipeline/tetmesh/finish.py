@@ -16,6 +16,7 @@ from pipeline.tetmesh.settings import TetmeshSettings
 from pipeline.tetmesh.settle import free_axes, settled
 
 _FITS = 2  # the second makes good what mending after the first moved
+_SLIDE = 0.2  # edges that it may move a vertex along its fiber
 _WALL_LEASH = 0.5  # envelopes that mending may move a vertex of a fiber
 
 
@@ -80,9 +81,10 @@ def finished(
     raw_error = _volume_error(points, tets, domain)
     tell("mending the worst cells", 0.6)
     limits = np.array(domain.box.lower), np.array(domain.box.upper)
+    leash, slide = _WALL_LEASH * settings.envelope * unit, _SLIDE * settings.edge * unit
     filled = 0.0
     for _ in range(_FITS):
-        points, tets, faulty, tips = settled(points, tets, domain, _WALL_LEASH * settings.envelope * unit)
+        points, tets, faulty, tips = settled(points, tets, domain, leash, slide)
         filled += tips
         points, tets = used_points(points, tets)
         faces, _ = boundary(tets)

@@ -12,6 +12,7 @@ from pipeline.geometry.tets import volumes
 from pipeline.geometry.triangles import area_vectors
 
 _ROUNDS = 4  # the relation is nearly linear: each round leaves some percent of the error before
+_RETREATS = 12  # vertices that stay may make neighbors stay
 _SMALLEST = 0.3  # share of its volume that every cell keeps, or its vertices stay where they are
 
 
@@ -37,21 +38,27 @@ def fitted(
     Returns
     -------
     (n, 3) array [m]
-        All volumes stay positive; vertices whose move would flatten a cell stay in place.
+        Vertices whose move would flatten a cell, or make a sound one faulty, stay in place.
     """
+    # numba takes half a second to load, which no refused case file should cost
+    from pipeline.geometry.adjacency import neighbors, ring
+    from pipeline.tetmesh.mend import faults
+
     result = np.array(points)
     movable = np.ones(len(points))
     on_wall = np.zeros(len(points), dtype=bool)
     on_wall[walls] = True
-    # no other cell changes
-    tets = all_tets[on_wall[all_tets].any(axis=1)]
+    # only cells with a vertex on a wall change, and only faces of these can become faulty
+    near = np.asarray(on_wall[all_tets].any(axis=1))
+    tets = all_tets[ring(all_tets, near, len(points))]
+    across = neighbors(tets)
     start = volumes(points, tets)
+    sound = faults(points, tets, across) <= 1.0
     wanted = fluid_volume - (float(volumes(points, all_tets).sum()) - float(start.sum()))
     for _ in range(_ROUNDS):
         vectors = area_vectors(result, walls)
         normals = np.stack(
-            [sum(np.bincount(walls[:, k], vectors[:, axis], len(points)) for k in range(3)) for axis in range(3)],
-            axis=1,
+            [np.bincount(walls.ravel(), np.repeat(vectors[:, axis], 3), len(points)) for axis in range(3)], axis=1
         )
         # where two fibers touch, the faces around a vertex look in opposite ways and it has no normal
         length = np.linalg.norm(normals, axis=1, keepdims=True)
@@ -62,17 +69,12 @@ def fitted(
         step = (wanted - float(volumes(result, tets).sum())) / gain
         moved = result + step * normals
         # beside a plane of the duct a fiber's vertex may have nothing of the mesh between itself and the outside
-        outside = (moved < limits[0]) | (moved > limits[1])
-        movable[outside.any(axis=1)] = 0.0
-        moved = np.where(movable[:, None] > 0, moved, result)
-        squeezed = volumes(moved, tets) < _SMALLEST * start
-        while squeezed.any():
-            movable[np.unique(tets[squeezed])] = 0.0
+        movable[((moved < limits[0]) | (moved > limits[1])).any(axis=1)] = 0.0
+        for _ in range(_RETREATS):
             moved = np.where(movable[:, None] > 0, moved, result)
-            squeezed = volumes(moved, tets) < _SMALLEST * start
-            if (movable[np.unique(tets[squeezed])] == 0).all():
+            harmed = (volumes(moved, tets) < _SMALLEST * start) | (sound & (faults(moved, tets, across) > 1.0))
+            if not harmed.any():
+                result = moved
                 break
-        if (volumes(moved, tets) <= 0).any():
-            break
-        result = moved
+            movable[np.unique(tets[harmed])] = 0.0
     return result

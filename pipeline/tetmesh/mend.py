@@ -168,6 +168,8 @@ def _move(
     vertices: Ints,
     homes: Floats,
     leash: Floats,
+    normals: Floats,
+    slide: float,
     free: Floats,
     directions: Floats,
     smallest: float,
@@ -189,11 +191,21 @@ def _move(
                 edge = points[tets[cells[k], j]] - place
                 length += math.sqrt((edge**2).sum())
                 count += 1
-        reach = min(_LARGEST_STEP * length / (0.75 * count), leash[vertex])
+        reach = min(_LARGEST_STEP * length / (0.75 * count), max(leash[vertex], slide))
+        normal = normals[vertex]
+        on_wall = (normal**2).sum() > 0.0
         for trial in range(len(directions)):
-            points[vertex] = place + reach * free[vertex] * directions[trial]
+            step = free[vertex] * directions[trial]
+            if on_wall and trial % 4 < 3:
+                step = step - (step * normal).sum() * normal
+                step *= free[vertex]
+            points[vertex] = place + reach * step
             stray = points[vertex] - homes[vertex]
-            if (stray**2).sum() > leash[vertex] ** 2 or (points[vertex] < low).any() or (points[vertex] > high).any():
+            off = (stray * normal).sum()
+            # along the wall a vertex of a fiber may slide, since it stays on the fiber
+            far = (stray**2).sum() - off**2 > slide**2 if on_wall else (stray**2).sum() > leash[vertex] ** 2
+            far = far or abs(off) > leash[vertex]
+            if far or (points[vertex] < low).any() or (points[vertex] > high).any():
                 continue
             cost = _cost_around(points, tets, across, first, cells, vertex, smallest, best)
             if cost < best:
@@ -230,7 +242,15 @@ def smallest_volume(points: Floats, tets: Ints) -> float:
 
 
 def mended(
-    points: Floats, tets: Ints, free: Floats, leash: Floats, sweeps: int, limits: tuple[Floats, Floats], seed: int = 0
+    points: Floats,
+    tets: Ints,
+    free: Floats,
+    leash: Floats,
+    sweeps: int,
+    limits: tuple[Floats, Floats],
+    normals: Floats | None = None,
+    slide: float = 0.0,
+    seed: int = 0,
 ) -> tuple[Floats, npt.NDArray[np.bool_]]:
     """Move vertices until no face is beyond the aim, or no move helps any more.
 
@@ -247,6 +267,10 @@ def mended(
         Most rounds over the vertices around faulty faces.
     limits : tuple of two (3,) arrays
         Lowest and highest coordinates of the box that no vertex may leave.
+    normals : (n, 3) array, optional
+        Outward unit normal of the wall at each vertex that may slide along it, else 0.
+    slide : float
+        How far such a vertex may move along its wall; its leash bounds how far off it.
     seed : int
         Of the directions tried.
 
@@ -263,13 +287,29 @@ def mended(
     rng = np.random.default_rng(seed)
     smallest = smallest_volume(result, tets)
     homes = result.copy()
+    along = np.zeros_like(result) if normals is None else normals
     found = np.zeros(len(tets))
     _update(result, tets, across, np.arange(len(tets)), smallest, found)
     for _ in range(sweeps):
         directions = rng.standard_normal((_TRIALS, 3))
         directions /= np.linalg.norm(directions, axis=1, keepdims=True)
         vertices = np.unique(tets[found > 1.0])
-        moved = _move(result, tets, across, first, cells, vertices, homes, leash, free, directions, smallest, *limits)
+        moved = _move(
+            result,
+            tets,
+            across,
+            first,
+            cells,
+            vertices,
+            homes,
+            leash,
+            along,
+            slide,
+            free,
+            directions,
+            smallest,
+            *limits,
+        )
         if len(moved) == 0:
             break
         touched = np.unique(np.concatenate([cells[first[vertex] : first[vertex + 1]] for vertex in moved]))

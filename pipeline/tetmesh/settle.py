@@ -9,6 +9,7 @@ import numpy.typing as npt
 from pipeline.data import FIBERS, Floats, FluidDomain, Ints
 from pipeline.geometry.box import Box
 from pipeline.geometry.tets import FACES, volumes
+from pipeline.geometry.triangles import area_vectors
 from pipeline.tetmesh.corners import split_corners, split_longest, true_boundary
 from pipeline.tetmesh.crevices import in_crevice, largest_part
 from pipeline.tetmesh.patches import assign, planes
@@ -17,10 +18,13 @@ _SWEEPS = 20  # of mending; the last of them move next to nothing
 _FILLINGS = 8  # rounds of mending and filling crevices
 _PATIENCE = 3  # rounds before cells that cannot be mended are filled though a vertex of theirs could move
 _RINGS = 3  # of cells around the faulty ones that take part
-_PASSES = 3  # over the whole mesh: what is filled may leave corners elsewhere
+_FLAT = 0.9  # length of the summed area vectors at a vertex over the summed areas
+_PASSES = 8  # over the whole mesh: what is filled may leave corners elsewhere
 
 
-def settled(points: Floats, tets: Ints, domain: FluidDomain, wall_leash: float) -> tuple[Floats, Ints, int, float]:
+def settled(
+    points: Floats, tets: Ints, domain: FluidDomain, wall_leash: float, slide: float
+) -> tuple[Floats, Ints, int, float]:
     """Mend and fill until no cell is faulty or nothing helps.
 
     Parameters
@@ -29,7 +33,9 @@ def settled(points: Floats, tets: Ints, domain: FluidDomain, wall_leash: float) 
     tets : (m, 4) int array
     domain : FluidDomain
     wall_leash : float [m]
-        How far a vertex of a fiber may move.
+        How far a vertex of a fiber may move off its wall.
+    slide : float [m]
+        How far it may move along it.
 
     Returns
     -------
@@ -61,7 +67,7 @@ def settled(points: Floats, tets: Ints, domain: FluidDomain, wall_leash: float) 
         cell, side = np.nonzero((across >= 0) & near[:, None])
         out = ~near[across[cell, side]]
         seam = np.sort(np.take_along_axis(tets[cell[out]], FACES[side[out]], axis=1), axis=1)
-        points, mended, tips = _settled_here(points, tets[near], seam, domain, wall_leash)
+        points, mended, tips = _settled_here(points, tets[near], seam, domain, wall_leash, slide)
         tets = np.concatenate([tets[~near], mended])
         filled += tips
     across = neighbors(tets)
@@ -70,7 +76,7 @@ def settled(points: Floats, tets: Ints, domain: FluidDomain, wall_leash: float) 
 
 
 def _settled_here(
-    points: Floats, tets: Ints, seam: Ints, domain: FluidDomain, wall_leash: float
+    points: Floats, tets: Ints, seam: Ints, domain: FluidDomain, wall_leash: float, slide: float
 ) -> tuple[Floats, Ints, float]:
     """Settle a part of the mesh that ends at a seam, and give the state with the fewest faulty cells."""
     from pipeline.tetmesh.mend import mended
@@ -87,7 +93,9 @@ def _settled_here(
         leash[fibers] = wall_leash
         # the cells behind the seam do not know what happens here
         leash[tets[_with_three(tets, fixed, len(points))]] = 0.0
-        points, faulty = mended(points, tets, free_axes(points, domain.box), leash, _SWEEPS, limits)
+        points, faulty = mended(
+            points, tets, free_axes(points, domain.box), leash, _SWEEPS, limits, wall_normals(points, fibers), slide
+        )
         # a flat cell is worse than any number of merely bad ones
         count = int(faulty.sum()) + len(tets) * int((volumes(points, tets) <= 0.0).sum())
         if count < fewest:
@@ -102,6 +110,29 @@ def _settled_here(
         if stuck and faulty.any():
             points, tets = split_longest(points, tets, faulty)
     return best
+
+
+def wall_normals(points: Floats, walls: Ints) -> Floats:
+    """Give the unit normal at each vertex where the wall is nearly flat, else 0.
+
+    Parameters
+    ----------
+    points : (n, 3) array [m]
+    walls : (b, 3) int array
+
+    Returns
+    -------
+    (n, 3) array
+    """
+    vectors = area_vectors(points, walls)
+    areas = np.linalg.norm(vectors, axis=1)
+    corners = walls.ravel()
+    normals = np.stack([np.bincount(corners, np.repeat(vectors[:, k], 3), len(points)) for k in range(3)], axis=1)
+    total = np.bincount(corners, np.repeat(areas, 3), len(points))
+    length = np.linalg.norm(normals, axis=1)
+    # where fibers meet, or a wall ends at a plane of the duct, no direction is along it
+    flat = (length > _FLAT * total) & (total > 0.0)
+    return np.where(flat[:, None], normals / np.where(flat, length, 1.0)[:, None], 0.0)
 
 
 def _with_three(tets: Ints, fixed: Ints, vertices: int) -> npt.NDArray[np.bool_]:
