@@ -84,6 +84,7 @@ def _settled_here(
     filled, fewest = 0.0, len(tets) ** 2
     best = (points, tets, filled)
     fixed = np.unique(seam)
+    loose = np.empty(0, np.int64)
     limits = np.array(domain.box.lower), np.array(domain.box.upper)
     for filling in range(_FILLINGS):
         points, tets = split_corners(points, tets, seam)
@@ -91,6 +92,8 @@ def _settled_here(
         fibers = walls[assign(points, walls, domain.box, tolerance=0.0) == domain.patches.index(FIBERS)]
         leash = np.full(len(points), np.inf)
         leash[fibers] = wall_leash
+        # where a tip was filled the wall is no fiber's: its vertices may move
+        leash[loose] = np.maximum(slide, wall_leash)
         # the cells behind the seam do not know what happens here
         leash[tets[_with_three(tets, fixed, len(points))]] = 0.0
         points, faulty = mended(
@@ -106,6 +109,7 @@ def _settled_here(
         # away from the fibers nothing is a crevice: a filled cell at the inlet of a coarse mesh doubled a pressure drop
         crevice = in_crevice(tets, walls, at_wall, len(points), faulty, stuck) & at_fibers(tets, fibers, len(points))
         filled += float(volumes(points, tets[crevice]).sum())
+        loose = np.union1d(loose, tets[crevice])
         tets, faulty = tets[~crevice], faulty[~crevice]
         if stuck and faulty.any():
             points, tets = split_longest(points, tets, faulty)
