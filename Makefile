@@ -38,8 +38,11 @@ check: setup  ## Style, types, imports, and the examples in the documentation
 	$(BIN)/lint-imports
 	$(BIN)/pytest --doctest-modules pipeline docs README.md
 
-bench: setup  ## Measure what the documentation quotes
+bench: setup  ## Measure what the documentation quotes: writing, engines side by side, time to a drag (half an hour)
 	$(BIN)/pytest benchmarks --benchmark-only --benchmark-group-by=func
+	$(BIN)/python -m benchmarks.meshers runs/bench/meshers
+	$(BIN)/python -m benchmarks.drag runs/bench/array array
+	$(BIN)/python -m benchmarks.drag runs/bench/default default
 
 verify: setup  ## Solve arrays and mats, and write what docs/verification.md shows (half an hour; needs OpenFOAM)
 	$(BIN)/python docs/verify.py runs/verification
