@@ -4,6 +4,7 @@ The numbers of nodes, cells and faces are hexadecimal, but a zone's id is decima
 """
 
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 
 from pipeline.data import FIBERS, INLET, OUTLET, SIDES, FaceMesh, Patch
@@ -19,11 +20,13 @@ _CONDITIONS = {
 }
 """Number and name of the condition that a patch gets. Fluent's symmetry is its frictionless wall too."""
 FLUID_ZONE = 2
+_TETRAHEDRA, _POLYHEDRA = 2, 7
+_TRIANGLES, _POLYGONS = 3, 5  # a polygon's row begins with how many corners it has
 _ROWS = 20_000  # faces that become text at once: the memory stays small
 
 
 def write_fluent(mesh: FaceMesh, path: Path, sides: str = "symmetry", progress: Progress = silent) -> None:
-    """Write a mesh of tetrahedra in meters.
+    """Write a mesh in meters: tetrahedra as such, all other cells as polyhedra.
 
     Parameters
     ----------
@@ -37,8 +40,6 @@ def write_fluent(mesh: FaceMesh, path: Path, sides: str = "symmetry", progress: 
     ------
     StageError
         If the sides are cyclic, or a patch has no condition known.
-    ValueError
-        If a cell is no tetrahedron.
     """
     if sides == "cyclic":
         raise StageError(
@@ -48,7 +49,6 @@ def write_fluent(mesh: FaceMesh, path: Path, sides: str = "symmetry", progress: 
     unknown = sorted({patch.name for patch in mesh.patches} - set(_CONDITIONS))
     if unknown:
         raise StageError(f"no Fluent condition is known for patch {', '.join(unknown)}")
-    mesh.tets()  # refuses other cells
     progress("export: Fluent")
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("w", encoding="ascii", newline="\n") as file:
@@ -61,12 +61,14 @@ def format_fluent(mesh: FaceMesh) -> Iterator[str]:
     yield f"(10 (0 1 {len(mesh.points):x} 0 3))\n(10 (1 1 {len(mesh.points):x} 1 3)(\n"
     for start in range(0, len(mesh.points), _ROWS):
         yield "".join("%.16e %.16e %.16e\n" % (x, y, z) for x, y, z in mesh.points[start : start + _ROWS].tolist())  # noqa: UP031 (twice as fast)
-    yield f"))\n(12 (0 1 {mesh.cells:x} 0))\n(12 ({FLUID_ZONE} 1 {mesh.cells:x} 1 2))\n"
+    kind = _TETRAHEDRA if mesh.tetrahedral else _POLYHEDRA
+    yield f"))\n(12 (0 1 {mesh.cells:x} 0))\n(12 ({FLUID_ZONE} 1 {mesh.cells:x} 1 {kind}))\n"
     yield f"(13 (0 1 {mesh.faces:x} 0))\n"
+    shape = _TRIANGLES if mesh.tetrahedral else _POLYGONS
     zones = [(Patch("interior-fluid", 0, mesh.internal), _INTERIOR)]
     zones += [(patch, _CONDITIONS[patch.name]) for patch in mesh.patches]
     for zone, (patch, (condition, _)) in enumerate(zones, FLUID_ZONE + 1):
-        yield f"(13 ({zone:x} {patch.start + 1:x} {patch.start + patch.count:x} {condition:x} 3)(\n"
+        yield f"(13 ({zone:x} {patch.start + 1:x} {patch.start + patch.count:x} {condition:x} {shape})(\n"
         yield from _format_faces(mesh, patch)
         yield "))\n"
     yield f"(45 ({FLUID_ZONE} fluid fluid)())\n"
@@ -76,10 +78,19 @@ def format_fluent(mesh: FaceMesh) -> Iterator[str]:
 
 def _format_faces(mesh: FaceMesh, patch: Patch) -> Iterator[str]:
     end = patch.start + patch.count
+    triangles = mesh.tetrahedral
     for start in range(patch.start, end, _ROWS):
         rows = slice(start, min(start + _ROWS, end))
-        # the right hand's thumb points into the first cell: the owner's outward order, reversed
-        a, b, c = (mesh.triangles()[rows].T[::-1] + 1).tolist()
         own = (mesh.owner[rows] + 1).tolist()
         other = (mesh.neighbour[rows] + 1).tolist() if end <= mesh.internal else [0] * len(own)
-        yield "".join("%x %x %x %x %x\n" % row for row in zip(a, b, c, own, other, strict=True))  # noqa: UP031 (twice as fast)
+        bounds = mesh.offsets[rows.start : rows.stop + 1]
+        # the right hand's thumb points into the first cell: the owner's outward order, reversed
+        if triangles:
+            a, b, c = (mesh.corners[bounds[0] : bounds[-1]].reshape(-1, 3).T[::-1] + 1).tolist()
+            yield "".join("%x %x %x %x %x\n" % row for row in zip(a, b, c, own, other, strict=True))  # noqa: UP031 (twice as fast)
+            continue
+        corners = (mesh.corners[bounds[0] : bounds[-1]] + 1).tolist()
+        ends = (bounds - bounds[0]).tolist()
+        for k, (first, last) in enumerate(pairwise(ends)):
+            numbers = [last - first, *reversed(corners[first:last]), own[k], other[k]]
+            yield " ".join(f"{number:x}" for number in numbers) + "\n"

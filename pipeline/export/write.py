@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from pipeline.data import FaceMesh, Floats, Flow
+from pipeline.errors import StageError
 from pipeline.export.exchange import SUFFIXES, write_exchange
 from pipeline.export.fluent import write_fluent
 from pipeline.export.openfoam import FiberSlip, write_openfoam
@@ -11,6 +12,8 @@ from pipeline.export.settings import ExportSettings
 from pipeline.export.su2 import write_su2
 from pipeline.export.vtk import write_vtk
 from pipeline.progress import Progress, silent
+
+_TETRAHEDRA_ONLY = {*SUFFIXES, "su2"}
 
 
 def export(
@@ -50,6 +53,13 @@ def export(
     StageError
         If a format cannot hold what it is asked to.
     """
+    if not mesh.tetrahedral:
+        unfit = [name for name in settings.formats if name in _TETRAHEDRA_ONLY]
+        if unfit:
+            raise StageError(
+                f"{', '.join(unfit)} holds tetrahedra only, and the mesh has other cells: take openfoam, vtk or fluent "
+                "in export.formats, or set tetmesh.engine to lattice or tetwild"
+            )
     for name in settings.formats:
         place = folder / name
         if name == "openfoam":

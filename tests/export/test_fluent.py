@@ -4,11 +4,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.data import FaceMesh
+from pipeline.data import FaceMesh, Patch
 from pipeline.errors import StageError
 from pipeline.export.fluent import write_fluent
 from pipeline.export.openfoam import read_openfoam, write_openfoam
 from pipeline.export.read import read_mesh
+from pipeline.export.settings import ExportSettings
+from pipeline.export.write import export
 from tests.openfoam import AIR, figures, foam, patches
 from tests.quality.test_checkmesh import BLOCK
 from tests.sample_meshes import duct
@@ -93,3 +95,35 @@ def test_a_damaged_file_says_what_is_wrong(mesh: FaceMesh, damage: object, told:
     path.write_text(damage(path.read_text()))
     with pytest.raises(StageError, match=told):
         read_mesh(path)
+
+
+@pytest.mark.openfoam
+def test_a_polyhedral_mesh_survives_openfoam_s_converter(tmp_path: Path) -> None:
+    write_openfoam(duct((5, 5, 10), (10e-6, 10e-6, 20e-6)).face_mesh(), tmp_path / "case", AIR)
+    foam(tmp_path / "case", "polyDualMesh", "-overwrite", "75")
+    cells = read_openfoam(tmp_path / "case")
+    assert np.diff(cells.offsets).max() > 4
+    write_fluent(cells, tmp_path / "mesh.msh")
+    for file in (tmp_path / "case/constant/polyMesh").iterdir():
+        file.unlink()
+    foam(tmp_path / "case", "fluent3DMeshToFoam", str(tmp_path / "mesh.msh"))
+    text = foam(tmp_path / "case", "checkMesh")
+    assert re.search(rf"^ +cells: +{cells.cells}$", text, re.MULTILINE)
+    assert re.search(rf"^ +internal faces: +{cells.internal}$", text, re.MULTILINE)
+    assert patches(text) == {patch.name: patch.count for patch in cells.patches}
+    assert figures(text)["total_volume"] == pytest.approx(cells.volume, rel=1e-9)
+
+
+def test_formats_of_tetrahedra_only_refuse_polyhedra(tmp_path: Path) -> None:
+    pyramid = FaceMesh(
+        np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 1]]),
+        np.array([0, 3, 2, 1, 0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4]),
+        np.array([0, 4, 7, 10, 13, 16]),
+        np.zeros(5, np.int64),
+        np.empty(0, np.int64),
+        1,
+        (Patch("inlet", 0, 5),),
+    )
+    with pytest.raises(StageError, match=r"gmsh, su2 holds tetrahedra only.*tetmesh\.engine"):
+        export(pyramid, tmp_path, ExportSettings(formats=("gmsh", "vtk", "su2")), AIR, "symmetry")
+    assert not list(tmp_path.iterdir())
