@@ -5,6 +5,8 @@
 those of it and all that it starts, the solver apart from the rest.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import json
 import os
 import subprocess

@@ -5,6 +5,8 @@
 Times are processor time of one core, compiled code at hand.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import argparse
 import time
 from pathlib import Path

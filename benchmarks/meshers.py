@@ -4,6 +4,8 @@ Each meshes the same air in a process of its own; processor seconds and memory a
 starts. `plain` is `pytetwild.tetrahedralize` called with nothing but the surface.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import json
 import os
 import subprocess

@@ -3,6 +3,8 @@
 Each kind of mat goes with each way of contact and each seed; engine and edge are the defaults.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import sys
 import time
 from collections.abc import Iterator

@@ -4,6 +4,8 @@ python benchmarks/surface.py              the surfaces alone, a corner of Fig. 1
 python benchmarks/surface.py --mesh 2     also fTetWild's CPU seconds, cells and volume error after 2 passes
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import argparse
 import math
 import resource

@@ -3,6 +3,8 @@
 Issue 6 asks for 3 s (OpenFOAM, binary), 10 s (Fluent), and never more than 4 times the mesh's own arrays.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import tracemalloc
 from pathlib import Path
 from typing import Any

@@ -5,6 +5,8 @@ MkDocs calls the functions that start with ``on_`` (`hooks` in mkdocs.yml). Noth
 minute and OpenGL.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import ast
 import contextlib
 import io

@@ -1,5 +1,7 @@
 """Render the paper's pictures of mats from our own: ``python docs/make_gallery.py docs/gallery``."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import sys
 from collections.abc import Callable
 from pathlib import Path

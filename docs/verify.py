@@ -4,6 +4,8 @@
 writes tables and plots from what the others left in docs/verification. Finished runs are reused.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import sys
 from pathlib import Path
 

@@ -13,6 +13,8 @@ Examples
 1e-06
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import importlib
 import sys
 from types import ModuleType

@@ -1,5 +1,7 @@
 """The case file: TOML in, valid settings out, every mistake told at once."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import difflib
 import tomllib
 from functools import cache

@@ -3,6 +3,8 @@
 Arrays are read-only. Lengths are in meters, angles in radians, everything else in SI.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass, field
 from typing import TypeVar
 

@@ -4,6 +4,8 @@ Each message says what is wrong, how many or how much, where, and what to do.
 The command line turns them into one line and an exit code; a library never exits.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 
 class FibertwinError(Exception):
     """Something the user can mend; `exit_code` is what the command line ends with."""

@@ -3,6 +3,8 @@
 Linux is what is tested. Elsewhere a function does what that system offers, and says what it does not.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import contextlib
 import ctypes
 import os

@@ -1,5 +1,7 @@
 """Where numba keeps what it compiled: found before numba is loaded, or a job without a home would end there."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import os
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """How a stage tells what it is doing, without knowing who listens."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from typing import Protocol
 
 

@@ -1,5 +1,7 @@
 """The line: one noun in, one noun out per stage, each result kept on disk and reused while it holds."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 import time
 from collections.abc import Callable

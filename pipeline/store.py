@@ -4,6 +4,8 @@ A stage's folder holds its files and `manifest.json`, which says what made them.
 that is renamed when it is complete, so a killed run leaves finished stages only.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import contextlib
 import dataclasses
 import errno

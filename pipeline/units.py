@@ -5,6 +5,8 @@ The annotated types below are what a case file's fields are made of. From a file
 they also take an SI float. pint is loaded only when the first text is read.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 import re
 from functools import cache

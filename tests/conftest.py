@@ -1,5 +1,7 @@
 """What every test may use."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import shutil
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """Runs OpenFOAM's own programs in tests, and reads what `checkMesh` prints."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import os
 import re
 import subprocess

@@ -1,5 +1,7 @@
 """Tetrahedral meshes of shapes with closed-form answers, for tests of what comes after the mesher."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import itertools
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Every bundled case goes through the whole line, with few fibers on a coarse mesh."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 
 import pytest

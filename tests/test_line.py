@@ -1,5 +1,7 @@
 """The whole line on the smoke case, held against OpenFOAM, VTK and the laws it must keep."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import json
 import math
 import os

@@ -1,5 +1,7 @@
 """What systems do differently. Linux is tried; of Windows only that nothing stops before it is asked for."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import os
 import shutil
 import subprocess

@@ -1,5 +1,7 @@
 """Analytical models of fiber filters: pressure drop, single-fiber efficiency, and what follows from them."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pipeline.analytics.comparison import compare
 from pipeline.analytics.growth import predictor
 from pipeline.analytics.options import read_options

@@ -1,5 +1,7 @@
 """Air as a function of temperature and pressure: viscosity, density, mean free path."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 REFERENCE_PRESSURE = 101325.0
 """Standard atmosphere [Pa]."""
 

@@ -3,6 +3,8 @@
 Table A1 and Eqs. A1 to A7 of the source paper (Beckman et al. 2021, doi 10.3390/fib9120084).
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.analytics.numbers import Numbers, Real

@@ -1,5 +1,7 @@
 """Pressure drop by every model from the nominal, the surface's and the mesh's solidity, and where they differ."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 
 from pipeline.analytics import slip

@@ -1,5 +1,7 @@
 """Which single diameter a mat of unequal fibers is entered into a model with: the candidates side by side."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 
 from pipeline.analytics import slip

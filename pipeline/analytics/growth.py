@@ -1,5 +1,7 @@
 """A filter's performance as a quick function of what changes while it grows: for mats that stop at a target."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Callable
 from typing import Protocol
 

@@ -4,6 +4,8 @@ Each function gives the single-fiber efficiency of one mechanism, the share of t
 fiber's cross section that it catches. All broadcast over their arguments.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.analytics.cell import hydrodynamic_factor

@@ -1,5 +1,7 @@
 """What a filter is worth: figure of merit in both senses in use, and the HEPA requirement (Eqs. 3, A34)."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,7 @@
 """What the formulas of this room take and give: plain numbers or arrays of them."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from typing import TypeAlias, TypeVar
 
 from pipeline.data import Floats

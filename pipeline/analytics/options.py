@@ -1,5 +1,7 @@
 """What a person types to predict a filter, turned into settings: one table of text, all mistakes told at once."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Mapping
 
 from pydantic import ValidationError

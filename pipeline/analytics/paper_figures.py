@@ -1,5 +1,7 @@
 """The paper's analytical figures drawn again: ``python -m pipeline.analytics.paper_figures docs/gallery``."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import sys
 from pathlib import Path
 

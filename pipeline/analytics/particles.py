@@ -1,5 +1,7 @@
 """What air does to a small particle: slip, drag, mobility, diffusion, inertia, settling (Eqs. A12 to A25)."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.analytics.numbers import Numbers

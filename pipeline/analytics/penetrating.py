@@ -1,5 +1,7 @@
 """The most penetrating particle size: by minimization, and by Lee and Liu's formulas (Eqs. A30, A31)."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 
 import numpy as np

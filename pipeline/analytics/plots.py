@@ -3,6 +3,8 @@
 matplotlib is imported where a figure is made, and without pyplot: nothing here opens a window or keeps state.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 from typing import TYPE_CHECKING
 

@@ -1,5 +1,7 @@
 """Aerosols of many sizes: anything that depends on the size, averaged over a lognormal distribution."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Callable
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Everything the analytical models say of one filter, as one record that writes to JSON."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -5,6 +5,8 @@ at low Reynolds numbers. `spielman_goren` and `slip` hold the models that need m
 `pressure_models` lists them all with their ranges.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.analytics.cell import hydrodynamic_factor

@@ -1,5 +1,7 @@
 """All pressure-drop models by name: what each stands for, where it comes from, and where it holds."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import MappingProxyType

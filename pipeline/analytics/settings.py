@@ -1,5 +1,7 @@
 """The case file's ``[flow]``: the air, its speed, and the particles it carries."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pydantic import BaseModel, ConfigDict, Field
 
 from pipeline.analytics import air

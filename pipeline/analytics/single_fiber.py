@@ -1,5 +1,7 @@
 """The single-fiber efficiency model as a whole: a record of the choices, and what it computes (Eqs. A5, A27 to A29)."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal, get_args

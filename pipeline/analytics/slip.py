@@ -1,5 +1,7 @@
 """Air that slips along thin fibers: Knudsen number, flow regime (Table A3), Kuwabara's cell with slip."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from typing import Literal
 
 import numpy as np

@@ -11,6 +11,8 @@ see ``docs/theory.md``.
    Environ. Sci. Technol. 2 (1968) 279-287, doi 10.1021/es60016a003.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from collections.abc import Callable
 

@@ -1,5 +1,7 @@
 """Predictions and comparisons as rows of text, for whoever prints them."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 
 from pipeline.analytics.comparison import REFERENCE

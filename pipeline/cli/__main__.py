@@ -1,5 +1,7 @@
 """`python -m pipeline.cli` is `fibertwin`."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pipeline.cli import main
 
 main()

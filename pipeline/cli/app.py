@@ -1,5 +1,7 @@
 """The commands of `fibertwin`."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import importlib.metadata
 import json
 import sys

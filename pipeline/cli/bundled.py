@@ -1,5 +1,7 @@
 """The case files that come with fibertwin: found by their bare name, in a checkout and in an installed package."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import difflib
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """What the case file may hold, read off the settings themselves: for `fibertwin init` and the reference in docs/."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import json
 import types
 from collections.abc import Iterable, Iterator

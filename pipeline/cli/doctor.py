@@ -1,5 +1,7 @@
 """What this machine has of what fibertwin needs and can use."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import importlib.metadata
 import os
 import platform

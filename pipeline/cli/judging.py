@@ -1,5 +1,7 @@
 """`fibertwin quality`: any mesh, whoever made it, held against the limits."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import dataclasses
 import json
 import sys

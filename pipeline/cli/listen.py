@@ -1,5 +1,7 @@
 """Show what a stage tells: a live line on a terminal, plain lines elsewhere."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager

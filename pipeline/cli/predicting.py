@@ -1,5 +1,7 @@
 """`fibertwin predict`: the analytical models for numbers, a case or a run."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import dataclasses
 import json
 import sys

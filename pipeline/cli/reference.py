@@ -1,5 +1,7 @@
 """The case-file reference as a page, made from the settings (docs/reference/case_file.md)."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Iterator
 
 from pydantic import BaseModel

@@ -1,5 +1,7 @@
 """`fibertwin run`: the line with its progress, and a summary that says where everything is."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import json
 import sys
 from dataclasses import asdict

@@ -1,5 +1,7 @@
 """`fibertwin solve`: the solver for a run that is there already."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import dataclasses
 import json
 import sys

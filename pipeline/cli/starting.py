@@ -1,5 +1,7 @@
 """`fibertwin init`: a case file that holds every key, each with its meaning."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import os
 import textwrap
 from collections.abc import Iterator, Mapping

@@ -1,5 +1,7 @@
 """`fibertwin study`: a case run many times, and its means as a table, as CSV and as a plot."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """Results as tables for a terminal."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import re
 from collections.abc import Iterable
 

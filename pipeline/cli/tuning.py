@@ -1,5 +1,7 @@
 """`fibertwin tune`: the settings of a mat from what was measured on a filter."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import dataclasses
 import json
 import sys

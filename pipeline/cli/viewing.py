@@ -1,5 +1,7 @@
 """`fibertwin view` and `fibertwin report`: look at a run in a window, as a picture, or as a page."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 
 from rich.console import Console

@@ -1,5 +1,7 @@
 """From measured filter data back to the settings of a mat."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pipeline.design.targets import Target, read_targets
 from pipeline.design.tune import Tuned, tune
 

@@ -4,6 +4,8 @@ A mat that stops at a smaller coverage is the beginning of one that stops at a l
 stops.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from dataclasses import dataclass
 

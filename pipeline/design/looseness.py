@@ -1,5 +1,7 @@
 """The one way from loose to tight: less spacing first, then limper fibers, then less spacing still."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Iterator
 
 from pipeline.mat import LayeredSettings

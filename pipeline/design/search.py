@@ -1,5 +1,7 @@
 """Looking at the mats of one relaxation slope and spacing: how they are once there is enough of them."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 
 import numpy as np

@@ -1,5 +1,7 @@
 """What was measured on a filter and shall be met."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass

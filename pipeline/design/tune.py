@@ -5,6 +5,8 @@ read off their mean growth; slope and spacing are then moved along one way from 
 second target is met. All steps use the same seeds, so chance does not come between two of them.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

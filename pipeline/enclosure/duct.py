@@ -1,5 +1,7 @@
 """Box minus fibers is the air; every triangle of its surface gets its patch."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 
 import numpy as np

@@ -1,5 +1,7 @@
 """What a user may say about the duct around the mat."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field

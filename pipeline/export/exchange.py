@@ -1,5 +1,7 @@
 """Formats of other tools, through meshio, as far as they can name the patches."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 
 import numpy as np

@@ -3,6 +3,8 @@
 The numbers of nodes, cells and faces are hexadecimal, but a zone's id is decimal where its name is given.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Meshes that are not ours: an OpenFOAM case, Fluent, or any file that meshio reads."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 
 from pipeline.data import FaceMesh

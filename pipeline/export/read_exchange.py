@@ -1,5 +1,7 @@
 """Reads what meshio reads: the cells as faces between an owner and a neighbour, the surfaces as patches."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import contextlib
 import io
 import struct

@@ -1,5 +1,7 @@
 """Reads Fluent's mesh in text: the sections of nodes, cells, faces and zone names."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import re
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """Reads VTK's `.vtu` with polyhedra among other cells, as `foamToVTK` writes it: meshio takes only one of both."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import contextlib
 import re
 import shutil

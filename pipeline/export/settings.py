@@ -1,5 +1,7 @@
 """Which files are written for solvers and viewers."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator

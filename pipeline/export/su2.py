@@ -1,5 +1,7 @@
 """SU2's mesh: elements, points, and a marker per patch. meshio 5.3 reads it but stops with an error when writing it."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Iterator
 from pathlib import Path
 

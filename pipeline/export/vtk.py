@@ -1,5 +1,7 @@
 """VTK files for ParaView and PyVista: the volume, one surface per patch, and one file that names them all."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING

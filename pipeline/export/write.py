@@ -1,5 +1,7 @@
 """Every format that a case asks for, each in a folder of its own."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Mapping
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """Which tetrahedra meet at a face, and which at a vertex. Compiled by numba: imported only where a mesh is made."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 import numpy.typing as npt
 

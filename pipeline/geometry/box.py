@@ -1,5 +1,7 @@
 """An axis-aligned box in space."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 
 

@@ -1,5 +1,7 @@
 """Cells of the usual kinds, or any polyhedra, to faces between an owner and a neighbour."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Loops compiled by numba, once per machine."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 

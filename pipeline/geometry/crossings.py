@@ -1,5 +1,7 @@
 """Where a triangle surface cuts through itself."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 from numba import njit
 

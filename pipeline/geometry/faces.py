@@ -1,5 +1,7 @@
 """Tetrahedra to faces between an owner and a neighbour, in the order that a finite-volume solver wants."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -3,6 +3,8 @@
 Compiled by numba: imported only where a mesh is made.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from dataclasses import dataclass
 

@@ -1,5 +1,7 @@
 """Areas, centers and volumes of polygons and of the polyhedra between them, as OpenFOAM computes them."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Iterator
 from dataclasses import dataclass
 

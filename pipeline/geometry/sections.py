@@ -1,5 +1,7 @@
 """Polygons in triangles, and sections of polyhedra with a plane across an axis."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 
 import numpy as np

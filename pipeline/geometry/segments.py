@@ -1,5 +1,7 @@
 """Distances between straight segments in space, and all the pairs that come near each other."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from typing import NamedTuple
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Booleans of closed triangle surfaces; the only door to manifold3d."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING

@@ -1,5 +1,7 @@
 """Tetrahedra on plain arrays."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.geometry.triangles import Floats, Ints

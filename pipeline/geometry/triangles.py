@@ -1,5 +1,7 @@
 """Closed triangle surfaces: areas, volume, and whether they are closed."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 import numpy.typing as npt
 

@@ -1,5 +1,7 @@
 """Random fiber mats: drawn, deposited, measured, exchanged."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pipeline.mat.audit import Audit, audit
 from pipeline.mat.exchange import read_fibers, write_fibers, write_spaceclaim
 from pipeline.mat.generate import generate

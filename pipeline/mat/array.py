@@ -1,5 +1,7 @@
 """Straight parallel fibers across the flow: the mats with exact drag."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.data import Mat

@@ -1,5 +1,7 @@
 """Whether the fibers of a mat keep clear of each other: an exact check of every pair."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Where fibers lie in plan: straight chords of the square, or pieces of a plan that wraps."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 
 import numpy as np

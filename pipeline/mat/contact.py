@@ -4,6 +4,8 @@ Every fiber is straight in plan, so two fibers meet in plan at one known place, 
 known stretch: no search is needed along them.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.geometry.compiled import compiled

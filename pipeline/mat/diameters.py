@@ -1,5 +1,7 @@
 """Fiber diameters, drawn from the distribution that the settings name."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 
 import numpy as np

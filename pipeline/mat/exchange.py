@@ -1,5 +1,7 @@
 """Fibers as text: CSV in and out, and the list of cylinders that SpaceClaim builds from (docs/mat.md)."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import csv
 import io
 import re

@@ -1,5 +1,7 @@
 """Make a mat as its settings say."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.data import Mat

@@ -1,5 +1,7 @@
 """Add fibers one by one until the mat is complete."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,5 +1,7 @@
 """How the solid of a mat is spread over its thickness."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.data import Mat

@@ -1,5 +1,7 @@
 """What a mat is like, in numbers."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from dataclasses import dataclass
 

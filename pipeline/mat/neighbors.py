@@ -1,5 +1,7 @@
 """Which fibers of a mat come near each other, and how near: exact distances of center lines."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from typing import NamedTuple
 
 import numpy as np

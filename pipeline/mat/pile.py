@@ -1,5 +1,7 @@
 """The fibers laid so far, and how the next one comes to rest on them."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from typing import Literal, TypeVar
 
 import numpy as np

@@ -3,6 +3,8 @@
 A tent is a fiber that rests on one point and falls from there with the relaxation slope on both sides.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.geometry.compiled import compiled

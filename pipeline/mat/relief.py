@@ -1,5 +1,7 @@
 """The mat seen from above: which part of the face fibers cover, and how high they reach there."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.data import Mat

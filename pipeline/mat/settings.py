@@ -1,5 +1,7 @@
 """What a user may say about the mat: one table of settings per generator."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from pathlib import Path
 from typing import Annotated, Literal, Self

@@ -1,5 +1,7 @@
 """Tables of the case file that come in kinds: one key of the table names the kind."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

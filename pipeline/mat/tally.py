@@ -1,5 +1,7 @@
 """Running sums over the fibers of a growing mat, and whether they have reached the stop."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

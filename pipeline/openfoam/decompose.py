@@ -1,5 +1,7 @@
 """How a mesh is split for the processes that share it."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pipeline.openfoam.foam_file import format_dictionary
 
 

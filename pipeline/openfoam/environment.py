@@ -1,5 +1,7 @@
 """Whether OpenFOAM is there, and what it needs around it."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import os
 import shutil
 from collections.abc import Sequence

@@ -1,5 +1,7 @@
 """OpenFOAM's file format: the header of each file, and its lists in text and in binary."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Callable, Iterable
 from itertools import pairwise
 from typing import Literal

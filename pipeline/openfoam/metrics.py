@@ -4,6 +4,8 @@ Source of all: OpenFOAM v1912, `primitiveMeshTools` and `polyMeshTools`. S is a 
 C and N the centers of its owner and neighbour, d = N - C, V a cell's volume. Each takes a mesh and its geometry.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.data import FaceMesh, Floats

@@ -1,5 +1,7 @@
 """Programs of OpenFOAM as child processes: they end when this process ends, and their logs tell what went wrong."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import contextlib
 import subprocess
 from collections.abc import Iterator

@@ -1,5 +1,7 @@
 """Reads `constant/polyMesh`, in text and in binary, from any OpenFOAM tool."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import re
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """The flow through a mat, read from a solved OpenFOAM case: pressure on a slice, and streamlines between the fibers."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING

@@ -1,5 +1,7 @@
 """Rendered mats in figures with axes in micrometers."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import io
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Fibers as tubes, rendered by pyvista into an array of pixels."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 

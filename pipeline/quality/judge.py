@@ -1,5 +1,7 @@
 """All metrics of a mesh, held against their limits."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,5 +1,7 @@
 """What the cells of a mesh are: tetrahedra, hexahedra, prisms, pyramids, or other polyhedra."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.data import FaceMesh, Ints

@@ -1,5 +1,7 @@
 """The limits that a good mesh keeps to; the defaults are those of OpenFOAM's `checkMesh`, with their sources."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pydantic import BaseModel, ConfigDict, Field
 
 from pipeline.units import Angle, Fraction, PositiveRatio

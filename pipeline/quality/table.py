@@ -1,5 +1,7 @@
 """A quality report as rows of text, for a terminal or a page."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pipeline.data import Metric, QualityReport
 
 HEADER = ("metric", "of", "min", "mean", "99 %", "max", "limit", "beyond")

@@ -1,5 +1,7 @@
 """Charts of a run: what its mat is made of, how good its cells are, what the models say."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from typing import TYPE_CHECKING
 
 import numpy as np

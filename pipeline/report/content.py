@@ -1,5 +1,7 @@
 """What a page may show: of a run, of which every part but the case may be missing; of a mesh that is not ours."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any

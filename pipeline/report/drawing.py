@@ -3,6 +3,8 @@
 VTK takes coordinates of 1e-6 for one point, so that lengths are scaled to order one before it sees them.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any

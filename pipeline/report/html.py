@@ -1,5 +1,7 @@
 """Templates filled: everything is escaped but the charts and tables that we made."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import base64
 import re
 from typing import Any

@@ -1,5 +1,7 @@
 """What an interactive scene holds: surfaces to show and hide, outlines, and no more triangles than a page bears."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 

@@ -1,5 +1,7 @@
 """The page of a mesh that is not ours: verdict, figures, histograms, worst places, pictures, provenance."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import shlex
 from pathlib import Path
 from typing import Any

@@ -3,6 +3,8 @@
 The mesh is scaled so that its largest extent is 1, whatever its unit was.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 

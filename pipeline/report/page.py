@@ -1,5 +1,7 @@
 """report.html: one page that holds everything it shows, made from whatever of a run is there."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 from typing import Any
 

@@ -1,5 +1,7 @@
 """The child process that draws: `python -m pipeline.report.painter FOLDER`; VTK renders nowhere else for a report."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import dataclasses
 import json
 import sys

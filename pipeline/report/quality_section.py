@@ -1,5 +1,7 @@
 """How good the cells are, for the page of a run and for the page of a mesh that is not ours."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any

@@ -3,6 +3,8 @@
 A machine without a screen is told to VTK before it looks for one, or it would complain of "bad X server connection".
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import json
 import os
 import re

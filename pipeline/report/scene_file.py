@@ -1,5 +1,7 @@
 """scene.html: the geometry and the mesh to turn in a browser, in one file that asks nothing of the network."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import base64
 import hashlib
 from importlib.resources import files

@@ -3,6 +3,8 @@
 Lengths are in micrometers here: VTK takes coordinates of 1e-6 for one point.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 

@@ -1,5 +1,7 @@
 """The sections of the page: facts, tables and charts from the nouns of a run."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import importlib.metadata
 import math
 import platform

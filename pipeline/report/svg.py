@@ -1,5 +1,7 @@
 """Charts as SVG that lives inside a page: ink in the page's own color, names that do not clash."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import io
 import re
 from collections.abc import Callable

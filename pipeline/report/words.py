@@ -1,5 +1,7 @@
 """What the numbers of a run mean, in sentences: what was made, whether to trust it, what to do next."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 import shlex
 from dataclasses import dataclass

@@ -1,5 +1,7 @@
 """What OpenFOAM's function objects wrote while it ran."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import re
 from pathlib import Path
 

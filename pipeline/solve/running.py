@@ -1,5 +1,7 @@
 """One run of OpenFOAM: started or continued, watched, stopped when the pressure drop has settled, read back."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import hashlib
 import math
 import re

@@ -1,5 +1,7 @@
 """How long and on how many cores the solver runs, and when it is done."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pydantic import BaseModel, ConfigDict, Field
 
 from pipeline.units import Duration, Fraction

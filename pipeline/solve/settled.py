@@ -1,5 +1,7 @@
 """When a pressure drop that changes from iteration to iteration may be believed."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pipeline.data import Floats
 
 

@@ -1,5 +1,7 @@
 """One run of a study: what a worker does."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import dataclasses
 import shutil
 

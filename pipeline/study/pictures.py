@@ -1,5 +1,7 @@
 """The mats of a study side by side: one of each combination."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 
 from pipeline.case import read_case

@@ -1,5 +1,7 @@
 """Which runs a study takes, each with all that its result depends on."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path

@@ -1,5 +1,7 @@
 """A study's means over its first swept key, with their confidence intervals."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import re
 from typing import TYPE_CHECKING, Any
 

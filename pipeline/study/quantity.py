@@ -1,5 +1,7 @@
 """What a study tells of each run: a number in the results of a stage, or one that the models predict."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import difflib
 import math
 from dataclasses import dataclass

@@ -1,5 +1,7 @@
 """The study file: which case, which keys take which values, how often, and what is told of each run."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import difflib
 import itertools
 from collections.abc import Iterator

@@ -1,5 +1,7 @@
 """Run a study: what is done is kept, what fails is told, and the rest goes on."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 import traceback
 from collections.abc import Iterable

@@ -1,5 +1,7 @@
 """Means over the seeds, each with its 95 % confidence interval."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,5 +1,7 @@
 """A study's results as CSV files: one line per run, and one line per combination."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import csv
 import io
 import math

@@ -3,6 +3,8 @@
 dask.distributed takes a second to load, so it is loaded when there is something to run.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import contextlib
 import logging
 import os

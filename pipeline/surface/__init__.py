@@ -1,1 +1,3 @@
 """The fibers' outside as one closed surface."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later

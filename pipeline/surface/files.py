@@ -1,5 +1,7 @@
 """The united fibers in files that other programs read."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Figures of a surface, for people and for `surface.json`."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,7 @@
 """What MeshLab thinks of a surface; the only import of pymeshlab."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,7 @@
 """What a user may say about the fibers' surface."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from typing import Annotated, Literal, Self
 

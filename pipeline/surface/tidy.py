@@ -3,6 +3,8 @@
 A mesher inserts every triangle it is given; those a thousand times longer than high cost it most.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 import numpy.typing as npt
 from numba import njit

@@ -1,5 +1,7 @@
 """One center line becomes closed tubes: rings of points on the cylinder, mitred at bends, closed at both ends."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from dataclasses import dataclass
 

@@ -1,5 +1,7 @@
 """The fibers of a mat become one closed surface, cut flush with the plan's sides."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.data import Mat, Pieces, Surface

@@ -1,1 +1,3 @@
 """The air in tetrahedra."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later

@@ -12,6 +12,8 @@ center is not determined (OpenFOAM's cell determinant is 0), and `checkMesh -all
         d                    d
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 import numpy.typing as npt
 

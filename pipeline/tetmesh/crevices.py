@@ -5,6 +5,8 @@ its tip have all their vertices on the boundary, so that none can be moved, and 
 The air in them stands still: they are given to the fibers, a few millionths of the air.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 import numpy.typing as npt
 from scipy.sparse import coo_array

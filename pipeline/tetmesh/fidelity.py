@@ -1,5 +1,7 @@
 """How well the walls of a mesh stand where the true fibers do."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 
 import numpy as np

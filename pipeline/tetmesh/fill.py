@@ -1,5 +1,7 @@
 """Fill the air with cells by the engine that the case names."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """Make a mesh fit for a solver: mend its worst cells, fill its crevices, give the fibers their volume, check."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -5,6 +5,8 @@ percent of the fibers' volume is 1.5 % of the pressure drop, so the fibers' vert
 the one distance that restores the volume, a few thousandths of a diameter.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.data import Floats, Ints

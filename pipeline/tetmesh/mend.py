@@ -6,6 +6,8 @@ decide what a finite-volume solver makes of a mesh. A few faces in ten thousand 
 vertices around just those costs a small share of one more pass over the whole mesh.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 
 import numpy as np

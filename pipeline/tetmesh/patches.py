@@ -4,6 +4,8 @@ fTetWild knows no patches and leaves every vertex anywhere within its envelope, 
 symmetry plane whose faces tilt by more than 3e-8 rad.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,7 @@
 """What an engine leaves before the mesh is mended."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 
 from pipeline.data import Floats, Ints

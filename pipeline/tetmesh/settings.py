@@ -1,5 +1,7 @@
 """What a user may ask of the tetrahedral mesh."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from typing import Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator

@@ -3,6 +3,8 @@
 Some cells in ten thousand are faulty: all work but looking for them is done on these and the cells around them.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 import numpy.typing as npt
 

@@ -1,5 +1,7 @@
 """How large the tetrahedra may be at each place: small at the fibers, larger with the distance from them."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import itertools
 
 import numpy as np

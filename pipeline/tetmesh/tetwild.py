@@ -1,5 +1,7 @@
 """From the air's closed surface to tetrahedra by fTetWild: scale, run, find the patches, make the planes flat."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 import psutil
 

@@ -3,6 +3,8 @@
 A crash in its C++ code ends this process and not the user's, and it leaves files in its working folder.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import ctypes
 import json
 import signal

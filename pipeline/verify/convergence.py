@@ -1,5 +1,7 @@
 """What three resolutions tell of the error that is left: observed order, extrapolation, grid convergence index."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from dataclasses import dataclass
 

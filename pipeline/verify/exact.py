@@ -5,6 +5,8 @@ odd, that meets the cylinder's condition term by term; the symmetries of the uni
 give the rest by least squares. The drag is 4 pi times the coefficient of r ln r.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 import numpy.typing as npt
 

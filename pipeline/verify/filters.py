@@ -1,5 +1,7 @@
 """The solved pressure drop of a whole case beside those of all models."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,5 +1,7 @@
 """Arrays of fibers through the whole line, on meshes of three resolutions, against their exact drag."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import shutil
 from dataclasses import dataclass
 from pathlib import Path

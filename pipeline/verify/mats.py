@@ -1,5 +1,7 @@
 """How far a random mat's pressure drop depends on the mesh and on the size of the box, over a few seeds."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

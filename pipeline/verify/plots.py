@@ -1,5 +1,7 @@
 """The measured figures as plots; matplotlib is imported where a figure is made, and without pyplot."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from typing import TYPE_CHECKING
 
 import numpy as np

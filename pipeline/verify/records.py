@@ -1,5 +1,7 @@
 """Measured figures as CSV, one line per run, so that tables and plots can be made again without measuring again."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import csv
 from collections.abc import Sequence
 from dataclasses import asdict, fields

@@ -5,6 +5,8 @@ among others (Tamada & Fujikawa 1957). What a missing row changes falls with dis
 k = 2 pi over the pitch, so two rows away it is some 1e-4 of the drag: the middle one of three is as good as endless.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import shutil
 import subprocess
 import tempfile

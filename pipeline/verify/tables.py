@@ -1,5 +1,7 @@
 """The measured figures as tables in Markdown, put between a page's marks."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from collections.abc import Sequence
 

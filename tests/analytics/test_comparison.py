@@ -1,5 +1,7 @@
 """A mat compared from three solidities: the parts add up, and equal mats look equal."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import dataclasses
 import json
 import math

@@ -1,5 +1,7 @@
 """What a growing mat is told about itself is what the paper's figures print."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 
 import pytest

@@ -1,5 +1,7 @@
 """What a person types is read with its units, over what a case already says, and refused in one go."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import pytest
 
 from pipeline.analytics.options import read_options

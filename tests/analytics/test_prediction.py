@@ -1,5 +1,7 @@
 """One record for one filter: what it holds, how it is written, drawn, and read back."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import dataclasses
 import json
 import math

@@ -1,5 +1,7 @@
 """Every pressure-drop model against exact arrays, its dilute limit, and the laws it must obey."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 
 import numpy as np

@@ -1,5 +1,7 @@
 """The single-fiber model: Table A6 line by line, the printed figures, and the laws of each mechanism."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 
 import numpy as np

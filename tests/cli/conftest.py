@@ -1,5 +1,7 @@
 """The command line in this process: what it prints, and the exit code that a shell would see."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass

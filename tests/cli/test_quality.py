@@ -1,5 +1,7 @@
 """`fibertwin quality` on meshes from other tools, and on what is no mesh."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import itertools
 import json
 from pathlib import Path

@@ -1,5 +1,7 @@
 """`fibertwin solve` on a run that is there; minutes, for the mesh and the solver."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import json
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """`fibertwin init`, `cases` and `schema`: the case file before there is one."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import importlib.metadata
 import json
 import re

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import pytest
 
 from pipeline.analytics import filter_of_mat, predict

@@ -1,5 +1,7 @@
 """Every link between the pages leads somewhere, and every page can be reached."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import re
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """The notebooks run as they stand, without Jupyter: their cells are Python, one after the other."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import json
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """The site: built strictly, from files alone, with the notebook's outputs; and a gallery that is up to date."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import importlib.util
 import os
 import re

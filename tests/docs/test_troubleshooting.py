@@ -1,5 +1,7 @@
 """Every message that the troubleshooting page shows is what the program says."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import re
 import shlex
 from pathlib import Path

@@ -1,5 +1,7 @@
 """The tutorial's commands are commands, and the quick ones run, in order, in an empty folder."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import re
 import shlex
 from pathlib import Path

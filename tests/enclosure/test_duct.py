@@ -1,5 +1,7 @@
 """The air around the fibers: volumes add up, patches lie where their names say."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 import pytest
 

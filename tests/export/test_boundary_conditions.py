@@ -1,5 +1,7 @@
 """Slip along fibers, cyclic sides and OpenFOAM.org's names."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 import re
 from dataclasses import replace

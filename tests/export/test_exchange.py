@@ -1,5 +1,7 @@
 """Other tools' formats, each read back by meshio, and gmsh's by OpenFOAM too."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 
 import numpy as np

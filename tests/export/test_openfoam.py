@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import re
 import tracemalloc
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Foreign meshes: every kind of cell, and files of strangers."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import contextlib
 from pathlib import Path
 

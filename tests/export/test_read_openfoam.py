@@ -1,5 +1,7 @@
 """Meshes from strangers: each damage is one clear error, never a crash."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import contextlib
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 """The schemes beside cyclic patches and elsewhere."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pipeline.export.openfoam.dictionaries import format_fv_schemes
 
 

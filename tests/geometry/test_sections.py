@@ -1,5 +1,7 @@
 """Sections of cells: as large as the plane within the mesh is, and each cell's as large as its shape says."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 import pytest
 

@@ -1,5 +1,7 @@
 """Segment distances against closed forms and an independent minimizer; pairs against all pairs."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 import pytest
 from hypothesis import given, settings

@@ -1,5 +1,7 @@
 """Chords and directions against the exact statistics of their laws."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Clear mats are clear, pair by pair; the paper's are not."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Drawn diameters against the moments of their distributions."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from typing import Any
 

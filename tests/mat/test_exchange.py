@@ -1,5 +1,7 @@
 """Fibers go out as text and come back; a wrong file is told by line, column and reason."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 from typing import Any
 

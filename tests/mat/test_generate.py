@@ -1,5 +1,7 @@
 """Whole mats against the statistics of the method (mean and spread over 200 seeds)."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Measures of mats whose answers are known in closed form."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import dataclasses
 import json
 import math

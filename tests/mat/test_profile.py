@@ -1,5 +1,7 @@
 """The hand-checked polylines of the method, and laws of the upper envelope."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 import pytest
 from hypothesis import given, settings

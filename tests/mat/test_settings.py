@@ -1,5 +1,7 @@
 """What a case file says about the mat, and how it is told off."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from typing import Any
 
 import pytest

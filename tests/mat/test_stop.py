@@ -1,5 +1,7 @@
 """Every stop ends a mat where it says, and the mats of Figs. 11 to 13 are the paper's."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from typing import Any
 

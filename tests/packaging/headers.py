@@ -3,6 +3,8 @@
 The line stands below the module's first docstring, whose first line says what the module is for.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import ast
 import re
 import sys

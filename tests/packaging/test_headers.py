@@ -1,5 +1,7 @@
 """Every source file says under which license it is."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from tests.packaging.headers import LICENSE, LINE, ROOT, missing, sources, with_header
 
 

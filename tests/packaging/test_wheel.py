@@ -1,5 +1,7 @@
 """The wheel holds what a user needs, and works where no checkout is. Needs the package index, so it is slow."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import subprocess
 import sys
 import zipfile

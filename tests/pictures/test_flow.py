@@ -1,5 +1,7 @@
 """The solved flow as pictures: read in the right units, and drawn with the fibers where they are."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 
 import numpy as np

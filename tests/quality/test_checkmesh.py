@@ -1,5 +1,7 @@
 """Agreement with OpenFOAM's own `checkMesh`, on tetrahedra, polyhedra and hexahedra with hanging nodes."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import re
 import shutil
 from pathlib import Path

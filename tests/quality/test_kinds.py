@@ -1,5 +1,7 @@
 """What cells are called, and in which unit they are told."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 
 import meshio

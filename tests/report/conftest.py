@@ -1,5 +1,7 @@
 """Whether this machine can do what pictures and pages need; asked without any of our own code."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import subprocess
 import sys
 

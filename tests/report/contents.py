@@ -1,5 +1,7 @@
 """A small run made by hand for pages: its mesh is no mesh of its mat, but pages tell only what they are given."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from functools import cache
 from pathlib import Path
 from typing import Any

@@ -1,5 +1,7 @@
 """Drives Chromium over its own pipe: opens a page, moves the pointer, looks at the pixels. Needs no library."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import base64
 import io
 import json

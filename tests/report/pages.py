@@ -1,5 +1,7 @@
 """Read a page back as a browser would: elements, attributes, text."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
 

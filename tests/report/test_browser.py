@@ -1,5 +1,7 @@
 """The page in a real browser: it shows, complains of nothing, and asks nobody for anything."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import http.server
 import re
 import shutil

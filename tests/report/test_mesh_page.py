@@ -1,5 +1,7 @@
 """The page of a mesh that is not ours: what stands in it, and that a stranger's names stay text."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import dataclasses
 import hashlib
 import json

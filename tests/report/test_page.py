@@ -1,5 +1,7 @@
 """The page: what stands in it, what does not, and that it asks nothing of anybody."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import dataclasses
 import re
 from pathlib import Path

@@ -1,5 +1,7 @@
 """The report of a run that stopped half way, or whose case was changed after."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import json
 from pathlib import Path
 

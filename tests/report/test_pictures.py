@@ -1,5 +1,7 @@
 """Pictures: drawn by a child process, which may find no OpenGL."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import base64
 import io
 from pathlib import Path

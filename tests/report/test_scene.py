@@ -1,5 +1,7 @@
 """The scene in a browser: it draws, turns, hides and tells, complains of nothing and asks nobody for anything."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import json
 import re
 from collections.abc import Iterator

@@ -1,5 +1,7 @@
 """`fibertwin view`: pictures of a run from the command"""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 
 import pytest

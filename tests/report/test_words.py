@@ -1,5 +1,7 @@
 """What the page says of a run must follow from its numbers."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import dataclasses
 
 import pytest

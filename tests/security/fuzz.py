@@ -1,5 +1,7 @@
 """Draw as many inputs as one likes: ``python -m tests.security.fuzz 20000 [part of a target's name]``."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import resource
 import sys
 import time

@@ -4,6 +4,8 @@ Each target takes one drawn input and holds if the reader gives a result or a `F
 a few hundred; ``python -m tests.security.fuzz 20000`` draws as many as one likes and says how many there were.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import contextlib
 import json
 import signal

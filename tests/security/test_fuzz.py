@@ -1,5 +1,7 @@
 """A few inputs for every reader in each run of the tests; docs/security.md tells of the many."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st

@@ -1,5 +1,7 @@
 """What fuzzing found: each of these once took the machine, the time or the terminal."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 from types import SimpleNamespace
 

@@ -1,5 +1,7 @@
 """Mats made by hand: what each one is can be seen in its name."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from collections.abc import Sequence
 
 import numpy as np

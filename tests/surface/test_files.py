@@ -1,5 +1,7 @@
 """Surfaces in files, read back by somebody else's reader."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 
 import numpy as np

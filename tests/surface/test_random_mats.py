@@ -1,5 +1,7 @@
 """Random mats of every kind through surface and enclosure: none fails, and volumes add up."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from collections.abc import Callable
 from typing import Any, Literal

@@ -1,5 +1,7 @@
 """Clearing splinters: fewer of them, and still the same closed surface."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 import pytest
 

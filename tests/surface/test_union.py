@@ -1,5 +1,7 @@
 """The united fibers: closed form solids, exact cuts, no fiber lost."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 
 import numpy as np

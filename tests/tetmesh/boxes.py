@@ -1,5 +1,7 @@
 """A unit cube in tetrahedra."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import itertools
 
 import numpy as np

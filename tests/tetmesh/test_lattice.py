@@ -1,5 +1,7 @@
 """The lattice that the fibers cut: it fills the duct, fits across its levels, and meets the true cylinders."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from dataclasses import replace
 

@@ -1,5 +1,7 @@
 """A mesh whose planes have dents is found out: fTetWild can leave triangles of its input out."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 import pytest
 

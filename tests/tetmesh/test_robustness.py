@@ -1,5 +1,7 @@
 """No seed fails: a hundred mats of each kind and contact through the mesher (minutes: `make test-slow`)."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import pytest
 
 from benchmarks.robustness import CONTACTS, KINDS, fate

@@ -1,5 +1,7 @@
 """snappyHexMesh as an engine: volumes with closed forms, planes to the last bit, OpenFOAM's own opinion."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 import subprocess
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Observed order, extrapolation and the grid convergence index, on answers whose law is known."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 
 import pytest

@@ -1,5 +1,7 @@
 """The exact drag of arrays, against what others found by other methods."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import pytest
 
 from pipeline.verify.exact import hexagonal_drag, square_drag

@@ -1,5 +1,7 @@
 """The ladder's cases, its records, and one rung of it through the whole line."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import replace
 from pathlib import Path
 

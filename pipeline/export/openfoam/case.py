@@ -1,5 +1,7 @@
 """A complete simpleFoam case: the mesh, the fields at the start, the solver's dictionaries, and scripts."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 
 from pipeline.data import FIBERS, INLET, OUTLET, SIDES, FaceMesh, Flow, Patch

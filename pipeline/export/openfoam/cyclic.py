@@ -1,5 +1,7 @@
 """Opposite sides that are one to a solver: face k of one is face k of the other, shifted."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.data import SIDES, FaceMesh, Ints, Patch

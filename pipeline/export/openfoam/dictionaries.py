@@ -11,6 +11,8 @@ The schemes are the ones whose error vanishes with the mesh spacing on tetrahedr
   none of 20.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pipeline.data import FIBERS, INLET, OUTLET, Flow
 from pipeline.export.settings import Dialect
 from pipeline.openfoam.foam_file import format_dictionary, format_header

@@ -1,5 +1,7 @@
 """`constant/polyMesh`: points, faces, owner, neighbour, boundary."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 
 from pipeline.data import FaceMesh, Patch

@@ -1,5 +1,7 @@
 """Air that slips along fibers of about its mean free path: a velocity on the wall that is a share of the cell's."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 
 import numpy as np

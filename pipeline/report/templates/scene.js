@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
 "use strict";
 // A small viewer: WebGL 2, parallel projection, no library and no request. The model is JSON in the page itself.
 const model = JSON.parse(document.getElementById("model").textContent);

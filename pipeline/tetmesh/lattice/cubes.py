@@ -6,6 +6,8 @@ orthogonal mesh. Toward a smaller or larger neighbor, and toward the box's plane
 center to its face, cut into tetrahedra that fit (Labelle & Shewchuk, Isosurface Stuffing, ACM TOG 26:57, 2007).
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.geometry.triangles import Ints

@@ -1,5 +1,7 @@
 """The air in tetrahedra from a body-centered cubic lattice that the fibers' surface cuts."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING

@@ -4,6 +4,8 @@ Corners of cubes have even coordinates on the *lattice*, whose unit is half the 
 of every cube, and the middle of every face and edge, is a lattice point as well.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Cut tetrahedra where the fibers' surface crosses them and keep what lies in the air."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 import numpy.typing as npt
 

@@ -6,6 +6,8 @@ toward the open air it is a polyhedron like any other, and no air is lost. The f
 to the fibers: the air in there stands still.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 
 from pipeline.data import FaceMesh, Ints

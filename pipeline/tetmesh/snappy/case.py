@@ -1,5 +1,7 @@
 """The case's folder: all that snappyHexMesh needs, and the scripts that run it."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pathlib import Path
 
 import numpy as np

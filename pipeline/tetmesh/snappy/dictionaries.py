@@ -6,6 +6,8 @@ case's fibers then lose 0.03 % of their volume. In one round they gain 2.8 %; wi
 they lose 0.3 %, with the creases between fibers given too 2.3 %; with creases found by snappyHexMesh they gain 2.7 %.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from pipeline.data import FIBERS, INLET, OUTLET, SIDES, Floats, Ints
 from pipeline.openfoam.foam_file import format_dictionary
 from pipeline.tetmesh.snappy.layout import Layout

@@ -4,6 +4,8 @@ Faces between points on a cylinder cut its corners, and cells that bridge a crea
 are tenths of a percent. The same is done for tetrahedra in `pipeline.tetmesh.fit`.
 """
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 from dataclasses import replace
 
 import numpy as np

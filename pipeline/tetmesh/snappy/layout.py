@@ -1,5 +1,7 @@
 """Which blocks the duct is cut into, how often those at the fibers are halved, and where the air is for sure."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import math
 from dataclasses import dataclass
 

@@ -1,5 +1,7 @@
 """From the air's closed surface to the cells of snappyHexMesh: write the case, run it, read it, mend and check."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import shutil
 import tempfile
 from dataclasses import replace

@@ -1,5 +1,7 @@
 """Meshes made of the faces of another: some cells joined, or some left out."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import numpy as np
 import numpy.typing as npt
 from scipy.sparse import coo_array

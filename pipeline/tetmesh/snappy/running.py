@@ -1,5 +1,7 @@
 """Run the case's own script as a child process within limits of time and memory, and tell how far it is."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 import re
 import subprocess
 import time

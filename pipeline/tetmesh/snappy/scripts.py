@@ -1,5 +1,7 @@
 """Scripts that stand beside the case, so that it can be meshed anywhere: here, on another machine, on a cluster."""
 
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 MESH_SCRIPT, JOB_SCRIPT = "Allmesh", "submit.slurm"
 
 _ALLMESH = """#!/bin/sh
