@@ -19,8 +19,8 @@ from pipeline.run import Run, run
 from pipeline.verify.ladder import climb, rung_case
 
 RUNS = {
-    "tetwild": ({"growth": 0.4}, (0.8, 0.6, 0.4, 0.3, 0.24)),
-    "snappy": ({"growth": 0.4}, (0.8, 0.6, 0.4, 0.3, 0.24)),
+    "tetwild": ({"growth": 0.4}, (0.8, 0.6, 0.4, 0.3, 0.24, 0.16)),
+    "snappy": ({"growth": 0.4}, (0.8, 0.6, 0.4, 0.3, 0.24, 0.16, 0.12)),
     "lattice": ({}, (0.8, 0.6, 0.5, 0.4, 0.3, 0.24)),
 }
 """By engine: settings that differ from the default, and edges in fiber diameters."""

@@ -16,6 +16,7 @@ from pipeline.tetmesh.snappy.mesh import CASE, snapped
 from pipeline.tetmesh.snappy.running import missing
 from pipeline.tetmesh.tetwild import tetrahedralized
 
+_TRIES = 3  # of fTetWild at walls that stand on the fibers
 _ENGINES = {"lattice": stuffed, "tetwild": tetrahedralized}
 
 
@@ -41,16 +42,18 @@ def fill(
     StageError
         If the engine fails, or the fibers' volume or their walls are further off than the settings allow.
     """
-    mesh, measures = _filled(domain, settings, tell, folder)
-    tell("measuring the walls", 0.95)
-    found = fidelity(mesh, domain)
-    if found.typical_deviation > settings.deviation:
-        raise StageError(
-            f"a hundredth of the fibers' walls is farther than {found.typical_deviation:.3g} diameters from the true "
-            f"fibers, allowed is {settings.deviation:g}; lower tetmesh.edge (now {settings.edge:g} diameters) or raise "
-            "tetmesh.deviation"
-        )
-    return mesh, replace(measures, fidelity=found)
+    # fTetWild differs each time, and may leave a film of solid on a plane of the duct
+    for _ in range(_TRIES if settings.engine == "tetwild" else 1):
+        mesh, measures = _filled(domain, settings, tell, folder)
+        tell("measuring the walls", 0.95)
+        found = fidelity(mesh, domain)
+        if found.typical_deviation <= settings.deviation:
+            return mesh, replace(measures, fidelity=found)
+    raise StageError(
+        f"a hundredth of the fibers' walls is farther than {found.typical_deviation:.3g} diameters from the true "
+        f"fibers, allowed is {settings.deviation:g}; lower tetmesh.edge (now {settings.edge:g} diameters) or raise "
+        "tetmesh.deviation"
+    )
 
 
 def _filled(
