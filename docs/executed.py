@@ -11,28 +11,32 @@ import ast
 import contextlib
 import io
 import json
+import logging
 import os
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from mkdocs.config.defaults import MkDocsConfig
-from mkdocs.plugins import get_plugin_logger
-from mkdocs.structure.files import File, Files
-from mkdocs.structure.pages import Page
+if TYPE_CHECKING:
+    # only the site's builder has it: the tests that look for examples here have not
+    from mkdocs.config.defaults import MkDocsConfig
+    from mkdocs.structure.files import Files
+    from mkdocs.structure.pages import Page
 
 HERE = Path(__file__).parent
 NOTEBOOK = "notebooks/first_case.ipynb"
 GALLERY = (("docs/make_gallery.py",), ("-m", "pipeline.analytics.paper_figures"))
 """What draws the gallery into a folder: mats and models. Studies and solved flows take hours, and are kept."""
 
-log = get_plugin_logger("executed")
+log = logging.getLogger("mkdocs.plugins.executed")
 
 
-def on_files(files: Files, config: MkDocsConfig) -> Files:
+def on_files(files: "Files", config: "MkDocsConfig") -> "Files":
     """Add the notebook as a page, and put the figures drawn now in the place of those kept."""
+    from mkdocs.structure.files import File
+
     text, figures = executed(HERE / NOTEBOOK)
     place = Path(NOTEBOOK).with_suffix("")
     made: dict[str, str | bytes] = {f"{place}.md": text}
@@ -47,7 +51,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     return files
 
 
-def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
+def on_page_markdown(markdown: str, page: "Page", config: "MkDocsConfig", files: "Files") -> str:
     """Lead to the notebook's page where the text leads to its file."""
     return markdown.replace(f"({NOTEBOOK})", f"({NOTEBOOK.replace('.ipynb', '.md')})")
 
