@@ -87,14 +87,13 @@ _Field = tuple[Floats, Floats, Floats, npt.NDArray[np.bool_], Floats, Floats, np
 
 
 @compiled
-def _local(x: float, y: float, z: float, field: _Field) -> float:
-    """Distance at any point, from the pieces that are nearest at the lattice points around it."""
+def _place(x: float, y: float, z: float, field: _Field) -> tuple[float, int]:
+    """Distance at any place and the piece it is the distance to, among those nearest at the lattice points around."""
     start, end, radius, flat, origin, step, nearest, reach = field
     ci = round((x - origin[0]) / step[0])
     cj = round((y - origin[1]) / step[1])
     ck = round((z - origin[2]) / step[2])
-    best = reach
-    last = -1
+    best, which, last = reach, -1, -1
     for i in range(max(0, ci - 1), min(nearest.shape[0], ci + 2)):
         for j in range(max(0, cj - 1), min(nearest.shape[1], cj + 2)):
             for k in range(max(0, ck - 1), min(nearest.shape[2], ck + 2)):
@@ -103,38 +102,22 @@ def _local(x: float, y: float, z: float, field: _Field) -> float:
                     continue
                 last = piece
                 found = _to_piece(x, y, z, start[piece], end[piece], radius[piece], flat[piece, 0], flat[piece, 1])
-                best = min(best, found)
-    return best
+                if found < best:
+                    best, which = found, piece
+    return best, which
 
 
 @compiled
-def _distances(points: Floats, field: _Field) -> Floats:
-    result = np.empty(len(points))
-    for n in range(len(points)):
-        result[n] = _local(points[n, 0], points[n, 1], points[n, 2], field)
-    return result
+def _local(x: float, y: float, z: float, field: _Field) -> float:
+    return _place(x, y, z, field)[0]
 
 
 @compiled
-def _nearest(points: Floats, field: _Field) -> tuple[Floats, npt.NDArray[np.int64]]:
-    start, end, radius, flat, origin, step, nearest, reach = field
-    result = np.full(len(points), reach)
-    which = np.full(len(points), -1)
+def _places(points: Floats, field: _Field) -> tuple[Floats, npt.NDArray[np.int64]]:
+    distance, which = np.empty(len(points)), np.empty(len(points), np.int64)
     for n in range(len(points)):
-        x, y, z = points[n, 0], points[n, 1], points[n, 2]
-        ci = round((x - origin[0]) / step[0])
-        cj = round((y - origin[1]) / step[1])
-        ck = round((z - origin[2]) / step[2])
-        for i in range(max(0, ci - 1), min(nearest.shape[0], ci + 2)):
-            for j in range(max(0, cj - 1), min(nearest.shape[1], cj + 2)):
-                for k in range(max(0, ck - 1), min(nearest.shape[2], ck + 2)):
-                    p = nearest[i, j, k]
-                    if p < 0 or p == which[n]:
-                        continue
-                    found = _to_piece(x, y, z, start[p], end[p], radius[p], flat[p, 0], flat[p, 1])
-                    if found < result[n]:
-                        result[n], which[n] = found, p
-    return result, which
+        distance[n], which[n] = _place(points[n, 0], points[n, 1], points[n, 2], field)
+    return distance, which
 
 
 @compiled
@@ -252,12 +235,11 @@ class FiberDistance:
 
     def at(self, points: Floats) -> Floats:
         """Distance at each point, (n,) array."""
-        found: Floats = _distances(points, self.field)
-        return found
+        return self.with_piece(points)[0]
 
     def with_piece(self, points: Floats) -> tuple[Floats, npt.NDArray[np.int64]]:
         """Distance at each point, (n,) array, and the field's piece it is the distance to, -1 beyond reach."""
-        found, piece = _nearest(points, self.field)
+        found, piece = _places(points, self.field)
         return found, piece
 
     def snapped(self, points: Floats, free: Floats, leash: float) -> tuple[Floats, npt.NDArray[np.bool_]]:

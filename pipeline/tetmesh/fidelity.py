@@ -9,6 +9,7 @@ import numpy as np
 from pipeline.data import FIBERS, FaceMesh, FluidDomain
 from pipeline.geometry.polyhedra import fanned
 from pipeline.geometry.triangles import area_vectors
+from pipeline.tetmesh.distance import fiber_distance
 
 _STEP = 0.35  # of the lattice that finds the nearest fiber, in mean fiber diameters
 _REACH = 1.5  # diameters; no wall is that far from every fiber
@@ -52,9 +53,6 @@ def fidelity(mesh: FaceMesh, domain: FluidDomain) -> Fidelity:
     -------
     Fidelity
     """
-    # numba takes half a second to load, which no refused case file should cost
-    from pipeline.geometry.fibers import FiberDistance
-
     unit = 2.0 * float(domain.radius.mean())
     which = mesh.patch(FIBERS)
     points, triangles = fanned(mesh.points, mesh.corners, mesh.offsets[which.start : which.stop + 1])
@@ -62,24 +60,13 @@ def fidelity(mesh: FaceMesh, domain: FluidDomain) -> Fidelity:
     middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
     area = np.repeat(np.linalg.norm(area_vectors(points, triangles), axis=1) / 3.0, 3)
     lower, upper = np.array(domain.box.lower), np.array(domain.box.upper)
-    size = (upper - lower) / unit
-    counts = np.maximum(1, np.ceil(size / _STEP)).astype(np.int64)
-    pieces = domain.pieces
-    distance = FiberDistance.about(
-        (pieces.start - lower) / unit,
-        (pieces.end - lower) / unit,
-        domain.radius[pieces.fiber] / unit,
-        pieces.flat,
-        np.zeros(3),
-        size,
-        (int(counts[0]), int(counts[1]), int(counts[2])),
-        _REACH,
-    )
+    counts = np.maximum(1, np.ceil((upper - lower) / unit / _STEP)).astype(np.int64)
+    distance = fiber_distance(domain, unit, counts, _REACH)
     off, piece = distance.with_piece((middles.reshape(-1, 3) - lower) / unit)
     away = np.abs(off)
     order = np.argsort(away)
     share = np.cumsum(area[order]) / area.sum()
-    fiber = pieces.fiber[distance.source[np.maximum(piece, 0)]]
+    fiber = domain.pieces.fiber[distance.source[np.maximum(piece, 0)]]
     count = len(domain.radius)
     known = piece >= 0
     weight = np.bincount(fiber[known], area[known], count)

@@ -73,8 +73,10 @@ def settled(
         tets = np.concatenate([tets[~near], mended])
         filled += tips
     across = neighbors(tets)
-    tets = tets[largest_part(across)]
-    return points, tets, int((faults(points, tets, neighbors(tets)) > 1.0).sum()), filled
+    whole = largest_part(across)
+    # parts share no face: what is faulty in one is so without the others
+    faulty = faults(points, tets, across)[whole] > 1.0
+    return points, tets[whole], int(faulty.sum()), filled
 
 
 def _settled_here(

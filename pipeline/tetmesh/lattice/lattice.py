@@ -16,6 +16,7 @@ from pipeline.geometry.tets import boundary, volumes
 from pipeline.geometry.triangles import area_vectors
 from pipeline.machine import peak_memory
 from pipeline.progress import Progress
+from pipeline.tetmesh.distance import fiber_distance
 from pipeline.tetmesh.raw import RawMesh
 from pipeline.tetmesh.settings import MEMORY_SHARE, TetmeshSettings
 
@@ -61,7 +62,6 @@ def stuffed(domain: FluidDomain, settings: TetmeshSettings, unit: float, tell: P
     edge: no edge is then cut nearer to its end than a vertex may move.
     """
     # numba takes half a second to load, which no refused case file should cost
-    from pipeline.geometry.fibers import FiberDistance
     from pipeline.tetmesh.lattice.cubes import lattice_tets
     from pipeline.tetmesh.lattice.octree import octree
 
@@ -72,18 +72,8 @@ def stuffed(domain: FluidDomain, settings: TetmeshSettings, unit: float, tell: P
     _check_memory(counts, settings)
     edge = float((size / counts).max())
     sizes = _distances(edge, settings)
-    pieces = domain.pieces
     tell("measuring the distance to the fibers")
-    distance = FiberDistance.about(
-        (pieces.start - lower) / unit,
-        (pieces.end - lower) / unit,
-        domain.radius[pieces.fiber] / unit,
-        pieces.flat,
-        np.zeros(3),
-        size,
-        (2 * int(counts[0]), 2 * int(counts[1]), 2 * int(counts[2])),
-        max(sizes, default=0.0) + 2.0 * edge,
-    )
+    distance = fiber_distance(domain, unit, 2 * counts, max(sizes, default=0.0) + 2.0 * edge)
     tell("filling the duct with cubes", 0.2)
     tree = octree(distance.on_lattice[1::2, 1::2, 1::2].astype(np.float64), sizes, edge)
     places, tets = lattice_tets(tree)
