@@ -152,3 +152,26 @@ def connected_pieces(triangles: Ints) -> Ints:
     graph = coo_array((np.ones(len(ends), dtype=np.int8), (ends[:, 0], ends[:, 1])), shape=(len(names), len(names)))
     pieces: Ints = connected_components(graph, directed=False)[1].astype(np.int64)[corner[:, 0]]
     return pieces
+
+
+def vertex_sums(triangles: Ints, vectors: Floats, vertices: int) -> Floats:
+    """Sum over the triangles at each vertex: of area vectors, the direction of the normal.
+
+    Parameters
+    ----------
+    triangles : (m, 3) int array
+    vectors : (m, 3) array
+        One per triangle.
+    vertices : int
+
+    Returns
+    -------
+    (vertices, 3) array
+
+    Examples
+    --------
+    >>> vertex_sums(np.array([[0, 1, 2], [0, 2, 3]]), np.array([[0, 0, 1.0], [0, 0, 2.0]]), 4)[:, 2].tolist()
+    [3.0, 1.0, 3.0, 2.0]
+    """
+    corners = triangles.ravel()
+    return np.stack([np.bincount(corners, np.repeat(vectors[:, k], 3), vertices) for k in range(3)], axis=1)

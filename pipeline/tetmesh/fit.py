@@ -11,7 +11,7 @@ import numpy as np
 
 from pipeline.data import Floats, Ints
 from pipeline.geometry.tets import volumes
-from pipeline.geometry.triangles import area_vectors
+from pipeline.geometry.triangles import area_vectors, vertex_sums
 
 _ROUNDS = 4  # the relation is nearly linear: each round leaves some percent of the error before
 _RETREATS = 12  # vertices that stay may make neighbors stay
@@ -59,9 +59,7 @@ def fitted(
     wanted = fluid_volume - (float(volumes(points, all_tets).sum()) - float(start.sum()))
     for _ in range(_ROUNDS):
         vectors = area_vectors(result, walls)
-        normals = np.stack(
-            [np.bincount(walls.ravel(), np.repeat(vectors[:, axis], 3), len(points)) for axis in range(3)], axis=1
-        )
+        normals = vertex_sums(walls, vectors, len(points))
         # where two fibers touch, the faces around a vertex look in opposite ways and it has no normal
         length = np.linalg.norm(normals, axis=1, keepdims=True)
         normals = np.divide(normals, length, out=np.zeros_like(normals), where=length > 0) * free * movable[:, None]

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from pipeline.data import FIBERS, Floats, FluidDomain, Ints
 from pipeline.geometry.box import Box
 from pipeline.geometry.tets import FACES, volumes
-from pipeline.geometry.triangles import area_vectors
+from pipeline.geometry.triangles import area_vectors, vertex_sums
 from pipeline.tetmesh.corners import split_corners, split_longest, true_boundary
 from pipeline.tetmesh.crevices import in_crevice, largest_part
 from pipeline.tetmesh.patches import assign, planes
@@ -134,9 +134,8 @@ def wall_normals(points: Floats, walls: Ints) -> Floats:
     """
     vectors = area_vectors(points, walls)
     areas = np.linalg.norm(vectors, axis=1)
-    corners = walls.ravel()
-    normals = np.stack([np.bincount(corners, np.repeat(vectors[:, k], 3), len(points)) for k in range(3)], axis=1)
-    total = np.bincount(corners, np.repeat(areas, 3), len(points))
+    normals = vertex_sums(walls, vectors, len(points))
+    total = np.bincount(walls.ravel(), np.repeat(areas, 3), len(points))
     length = np.linalg.norm(normals, axis=1)
     # where fibers meet, or a wall ends at a plane of the duct, no direction is along it
     flat = (length > _FLAT * total) & (total > 0.0)
