@@ -194,7 +194,9 @@ def _labels(content: Any, index: int, count: int) -> list[str]:
         if key in _TAGS:
             label = [names.get((int(tag), 2), f"surface-{int(tag)}") for tag in values[index]]
     for name, parts in content.cell_sets.items():
-        if not name.startswith("gmsh:") and parts[index] is not None:
+        if not name.startswith("gmsh:") and index < len(parts) and parts[index] is not None:
             for face in np.asarray(parts[index], np.int64).tolist():
+                if not 0 <= face < count:
+                    raise ValueError(f"its set {name} names a face that is not there")
                 label[face] = name
     return label

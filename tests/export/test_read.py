@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from pipeline.errors import StageError
 from pipeline.export import export
 from pipeline.export.read import read_mesh
+from pipeline.export.read_exchange import _faces
 from pipeline.export.settings import ExportSettings, Format
 from pipeline.export.vtk import write_vtk
 from tests.openfoam import AIR
@@ -141,3 +142,14 @@ def test_what_vtk_itself_writes_of_hexahedra_and_polyhedra_is_read(tmp_path: Pat
     found = read_mesh(tmp_path / "internal.vtu")
     assert (found.cells, found.faces, found.internal) == (mesh.cells, mesh.faces, mesh.internal)
     assert found.volume == pytest.approx(1.5, rel=1e-12)
+
+
+def test_a_set_with_fewer_parts_than_there_are_blocks_names_nothing_beyond_them() -> None:
+    # as meshio leaves the sets of a damaged Abaqus file, found by fuzzing
+    import meshio
+
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    blocks = [("tetra", np.array([[0, 1, 2, 3]])), ("triangle", np.array([[0, 2, 1]]))]
+    content = meshio.Mesh(points, blocks)
+    content.cell_sets = {"short": [np.array([0])]}
+    assert [(patch.name, patch.count) for patch in _faces(content).patches] == [("boundary", 4)]
