@@ -15,8 +15,8 @@ from pathlib import Path
 
 from pipeline.case import Case, read_case
 from pipeline.cli.bundled import found
-from pipeline.run import Run, run
-from pipeline.verify.ladder import climb, rung_case
+from pipeline.line.run import Run, run
+from validation.ladder import climb, rung_case
 
 RUNS = {
     "tetwild": ({"growth": 0.4}, (0.8, 0.6, 0.4, 0.3, 0.24, 0.16)),

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from pipeline.case import read_case
 from pipeline.cli.bundled import found
-from pipeline.run import Run
+from pipeline.line.run import Run
 
 SIDES = (12.5, 25.0, 50.0, 100.0)
 

@@ -11,7 +11,10 @@ import argparse
 import time
 from pathlib import Path
 
-from pipeline.mat import LayeredSettings, audit, generate, measure
+from pipeline.mat.audit import audit
+from pipeline.mat.generate import generate
+from pipeline.mat.measures import measure
+from pipeline.mat.settings import LayeredSettings
 
 FIBERS = {"fiber_diameter": 1.4e-6, "relaxation_slope": 0.15, "seed": 1, "max_fibers": 10**6}
 

@@ -15,14 +15,15 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline import store
 from pipeline.case import read_case
 from pipeline.cli.bundled import found as find_case
-from pipeline.data import FaceMesh, FluidDomain, Patch
 from pipeline.geometry.faces import tet_faces
-from pipeline.quality import judge
-from pipeline.run import run
-from pipeline.tetmesh.fill import fill
+from pipeline.line import store
+from pipeline.line.run import run
+from pipeline.mesh.fill import fill
+from pipeline.nouns.domain import FluidDomain
+from pipeline.nouns.mesh import FaceMesh, Patch
+from pipeline.quality.judge import judge
 
 ENGINES = ("plain", "tetwild", "snappy", "lattice")
 GROWTH = {"tetwild": 0.4, "snappy": 0.4}

@@ -13,12 +13,13 @@ from dataclasses import dataclass
 from pipeline.enclosure.duct import enclose
 from pipeline.enclosure.settings import EnclosureSettings
 from pipeline.errors import FibertwinError
-from pipeline.mat import LayeredSettings, generate
-from pipeline.quality import judge
+from pipeline.mat.generate import generate
+from pipeline.mat.settings import LayeredSettings
+from pipeline.mesh.fill import fill
+from pipeline.mesh.settings import TetmeshSettings
+from pipeline.quality.judge import judge
 from pipeline.surface.settings import SurfaceSettings
 from pipeline.surface.union import unite
-from pipeline.tetmesh.fill import fill
-from pipeline.tetmesh.settings import TetmeshSettings
 
 SIDE, DIAMETER = 8e-6, 1.4e-6
 MIXTURE = {"distribution": "mixture", "parts": [

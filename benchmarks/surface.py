@@ -18,10 +18,10 @@ from pipeline.enclosure.settings import EnclosureSettings
 from pipeline.geometry.tets import volumes
 from pipeline.mat.generate import generate
 from pipeline.mat.settings import Constant, LayeredSettings, Stop
+from pipeline.mesh.engines.ftetwild.child import Limits, run_child
 from pipeline.surface.measures import measure_surface
 from pipeline.surface.settings import SurfaceSettings
 from pipeline.surface.union import unite
-from pipeline.tetmesh.child import Limits, run_child
 
 DIAMETER = 1.4e-6
 ENVELOPE, EDGE = 0.04, 0.6

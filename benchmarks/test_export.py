@@ -11,10 +11,10 @@ from typing import Any
 
 import pytest
 
-from pipeline.data import FaceMesh, TetMesh
-from pipeline.export import export
 from pipeline.export.settings import ExportSettings
-from pipeline.quality import cell_fields, judge
+from pipeline.export.write import export
+from pipeline.nouns.mesh import FaceMesh, TetMesh
+from pipeline.quality.judge import cell_fields, judge
 from tests.openfoam import AIR
 from tests.sample_meshes import duct
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent
 NOTEBOOK = "notebooks/first_case.ipynb"
-GALLERY = (("docs/make_gallery.py",), ("-m", "pipeline.analytics.paper_figures"))
+GALLERY = (("docs/make_gallery.py",), ("-m", "validation.paper_figures"))
 """What draws the gallery into a folder: mats and models. Studies and solved flows take hours, and are kept."""
 
 log = logging.getLogger("mkdocs.plugins.executed")
@@ -58,7 +58,7 @@ def on_page_markdown(markdown: str, page: "Page", config: "MkDocsConfig", files:
 
 def drawn_gallery() -> dict[str, bytes]:
     """Draw the gallery anew; the figures by their names."""
-    from pipeline.report.render import rendering_environment
+    from pipeline.report.views.render import rendering_environment
 
     with tempfile.TemporaryDirectory() as folder:
         for command in GALLERY:

@@ -8,13 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pipeline.case import Case, validate
-from pipeline.data import Mat
 from pipeline.geometry.box import Box
-from pipeline.mat import generate, measure
-from pipeline.pictures import duct_figure, mat_figure, write_png
-from pipeline.run import mat_predictor
-from pipeline.study import read_study
+from pipeline.line.run import mat_predictor
+from pipeline.mat.generate import generate
+from pipeline.mat.measures import measure
+from pipeline.nouns.fibers import Mat
+from pipeline.pictures.panels import duct_figure, mat_figure, write_png
 from pipeline.study.pictures import draw_points
+from pipeline.study.settings import read_study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,16 +9,16 @@ writes tables and plots from what the others left in docs/verification. Finished
 import sys
 from pathlib import Path
 
-from pipeline.analytics.plots import save_figure
+from pipeline.analytics.tables.plots import save_figure
 from pipeline.case import read_case
-from pipeline.pictures import write_png
+from pipeline.line.run import Run, run
 from pipeline.pictures.flow import read_flow, slice_figure, streamline_figure
-from pipeline.run import Run, run
-from pipeline.verify import filters, tables
-from pipeline.verify.ladder import SLIP, Rung, ladder
-from pipeline.verify.mats import MatRun, mat_runs
-from pipeline.verify.plots import ladder_figure, mats_figure
-from pipeline.verify.records import read_records, write_records
+from pipeline.pictures.panels import write_png
+from validation import filters, tables
+from validation.ladder import SLIP, Rung, ladder
+from validation.mats import MatRun, mat_runs
+from validation.plots import ladder_figure, mats_figure
+from validation.records import read_records, write_records
 
 DOCS = Path(__file__).parent
 PAGE, RECORDS, GALLERY = DOCS / "verification.md", DOCS / "verification", DOCS / "gallery"

@@ -16,56 +16,42 @@ Examples
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import importlib
-import sys
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from pipeline.machine_code import make_room
 
 if TYPE_CHECKING:
-    from pipeline.analytics import compare as compare
-    from pipeline.analytics import predict as predict
+    from pipeline.analytics.models.comparison import compare as compare
+    from pipeline.analytics.models.prediction import predict as predict
     from pipeline.case import Case as Case
     from pipeline.case import read_case as read_case
     from pipeline.enclosure.duct import enclose as enclose
-    from pipeline.export import read_mesh as read_mesh
-    from pipeline.mat import generate as generate
-    from pipeline.mat import measure as measure
-    from pipeline.quality import judge as judge
-    from pipeline.run import Run as Run
-    from pipeline.run import run as run
+    from pipeline.export.read import read_mesh as read_mesh
+    from pipeline.line.run import Run as Run
+    from pipeline.line.run import run as run
+    from pipeline.mat.generate import generate as generate
+    from pipeline.mat.measures import measure as measure
+    from pipeline.mesh.fill import fill as fill
+    from pipeline.quality.judge import judge as judge
     from pipeline.surface.union import unite as unite
-    from pipeline.tetmesh.fill import fill as fill
 
 _HOMES = {
     "Case": "pipeline.case",
-    "Run": "pipeline.run",
-    "compare": "pipeline.analytics",
+    "Run": "pipeline.line.run",
+    "compare": "pipeline.analytics.models.comparison",
     "enclose": "pipeline.enclosure.duct",
-    "fill": "pipeline.tetmesh.fill",
-    "generate": "pipeline.mat",
-    "judge": "pipeline.quality",
-    "measure": "pipeline.mat",
-    "predict": "pipeline.analytics",
+    "fill": "pipeline.mesh.fill",
+    "generate": "pipeline.mat.generate",
+    "judge": "pipeline.quality.judge",
+    "measure": "pipeline.mat.measures",
+    "predict": "pipeline.analytics.models.prediction",
     "read_case": "pipeline.case",
-    "read_mesh": "pipeline.export",
-    "run": "pipeline.run",
+    "read_mesh": "pipeline.export.read",
+    "run": "pipeline.line.run",
     "unite": "pipeline.surface.union",
 }
 __all__ = ["Case", "Run", "compare", "enclose", "fill", "generate", "judge", "measure", "predict", "read_case"]
 __all__ += ["read_mesh", "run", "unite"]
-
-
-class _Package(ModuleType):
-    # The import system puts the submodule `run` here once somebody loads it: `from pipeline import run` would be a
-    # function or a module, depending on what was imported before. It is the function, always.
-    @property
-    def run(self) -> Any:
-        return sys.modules["pipeline.run"].run if "pipeline.run" in sys.modules else __getattr__("run")
-
-    @run.setter
-    def run(self, module: ModuleType) -> None:
-        pass
 
 
 def __getattr__(name: str) -> Any:
@@ -77,7 +63,5 @@ def __getattr__(name: str) -> Any:
 def __dir__() -> list[str]:
     return sorted({*globals(), *_HOMES})
 
-
-sys.modules[__name__].__class__ = _Package
 
 make_room()

@@ -15,10 +15,10 @@ from pipeline.enclosure.settings import EnclosureSettings
 from pipeline.errors import CaseError
 from pipeline.export.settings import ExportSettings
 from pipeline.mat.settings import STOPS, FileSettings, MatSettings
+from pipeline.mesh.settings import TetmeshSettings
 from pipeline.quality.settings import QualitySettings
 from pipeline.solve.settings import SolveSettings
 from pipeline.surface.settings import SurfaceSettings
-from pipeline.tetmesh.settings import TetmeshSettings
 from pipeline.units import FROM_FILE
 
 LARGEST_FILE = 100_000

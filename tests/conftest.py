@@ -9,7 +9,7 @@ import pytest
 from hypothesis import settings
 
 from pipeline.case import read_case
-from pipeline.run import Run, run
+from pipeline.line.run import Run, run
 
 # a busy machine is no fault of the code's
 settings.register_profile("fibertwin", deadline=None)

@@ -7,7 +7,7 @@ import re
 import subprocess
 from pathlib import Path
 
-from pipeline.data import Flow
+from pipeline.nouns.flow import Flow
 
 AIR = Flow(face_velocity=0.025, temperature=293.0, viscosity=1.8e-5, density=1.2, mean_free_path=65.3e-9)
 ENVIRONMENT = {"WM_PROJECT_DIR": "/usr/share/openfoam", **os.environ}

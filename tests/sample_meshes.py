@@ -6,11 +6,14 @@ import itertools
 
 import numpy as np
 
-from pipeline.data import FIBERS, PATCHES, FaceMesh, Floats, Patch, Pieces, TetMesh
 from pipeline.geometry.box import Box
 from pipeline.geometry.cells import cell_faces, polygons_of
 from pipeline.geometry.tets import FACES, volumes
 from pipeline.geometry.triangles import Ints
+from pipeline.nouns.arrays import Floats
+from pipeline.nouns.fibers import Pieces
+from pipeline.nouns.mesh import FaceMesh, Patch, TetMesh
+from pipeline.nouns.patches import FIBERS, PATCHES
 
 NO_PIECES = Pieces(np.empty((0, 3)), np.empty((0, 3)), np.empty(0, np.int64), np.empty((0, 2), bool))
 """Of a shape that no fiber made."""

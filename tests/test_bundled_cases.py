@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from pipeline.case import read_case
-from pipeline.mat import BoxSettings, LayeredSettings
-from pipeline.run import Run, run
+from pipeline.line.run import Run, run
+from pipeline.mat.settings import BoxSettings, LayeredSettings
 
 CASES = Path(__file__).parent.parent / "cases"
 COARSE = ("tetmesh.edge=0.9", "tetmesh.growth=0.6", "surface.sides=8", "tetmesh.envelope=0.05")

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from pipeline.case import Case, override, read_case, read_toml, validate
 from pipeline.errors import CaseError
-from pipeline.mat import LayeredSettings
+from pipeline.mat.settings import LayeredSettings
 
 CASES = Path(__file__).parent.parent / "cases"
 

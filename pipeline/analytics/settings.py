@@ -4,10 +4,10 @@
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from pipeline.analytics import air
-from pipeline.analytics.pressure_models import PressureModelName
-from pipeline.analytics.single_fiber import PresetName
-from pipeline.data import Flow
+from pipeline.analytics.formulas import air
+from pipeline.analytics.models.pressure_models import PressureModelName
+from pipeline.analytics.models.single_fiber import PresetName
+from pipeline.nouns.flow import Flow
 from pipeline.units import Density, Fraction, Length, PositiveRatio, Pressure, Temperature, Velocity, Viscosity
 
 

@@ -2,6 +2,6 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-from pipeline.cli import main
+from pipeline.cli.app import main
 
 main()

@@ -15,8 +15,8 @@ from pathlib import Path
 
 import psutil
 
+from pipeline.mesh.engines.snappy.running import PARALLEL, PROGRAMS
 from pipeline.openfoam.environment import INSTALL, environment
-from pipeline.tetmesh.snappy.running import PARALLEL, PROGRAMS
 
 _SOLVER = ("checkMesh", "simpleFoam")
 _INSTALL_MPI = "on Debian: apt-get install openmpi-bin"
@@ -95,7 +95,7 @@ def _programs(name: str, programs: Sequence[str], purpose: str, advice: str) -> 
 
 
 def _opengl() -> Finding:
-    from pipeline.report.render import rendering_environment
+    from pipeline.report.views.render import rendering_environment
 
     # a process of its own: VTK ends the one that asks in vain
     done = subprocess.run(

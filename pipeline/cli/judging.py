@@ -13,13 +13,14 @@ from pipeline.case import read_case
 from pipeline.cli.listen import listening
 from pipeline.cli.printable import printable
 from pipeline.cli.tables import quality_table
-from pipeline.data import FaceMesh, QualityReport
 from pipeline.export.read import mesh_files, read_mesh
+from pipeline.line.run import CASE, Run
+from pipeline.line.store import disk_trouble_explained, file_digest
+from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.quality import QualityReport
 from pipeline.progress import Progress
-from pipeline.quality import judge
+from pipeline.quality.judge import judge
 from pipeline.quality.settings import QualitySettings
-from pipeline.run import CASE, Run
-from pipeline.store import disk_trouble_explained, file_digest
 
 FELL_SHORT = 1
 """Exit code where a limit does not hold."""
@@ -68,10 +69,10 @@ def _write_pages(
     path: Path, source: _Source, report: QualityReport, page: Path | None, scene: Path | None, tell: Progress
 ) -> None:
     # pages take a second to load what they need, for nobody who wants a table only
-    from pipeline.report import MeshContent, SourceFile
-    from pipeline.report.layers import layers_of_mesh
-    from pipeline.report.mesh_page import write_mesh_page
-    from pipeline.report.scene_file import write_scene
+    from pipeline.report.page.content import MeshContent, SourceFile
+    from pipeline.report.page.mesh_page import write_mesh_page
+    from pipeline.report.views.layers import layers_of_mesh
+    from pipeline.report.views.scene_file import write_scene
 
     files = tuple(SourceFile(str(file), file.stat().st_size, file_digest(file)) for file in source.files)
     content = MeshContent(path, source.mesh, report, source.limits, source.limits_of, files)

@@ -10,14 +10,15 @@ from pathlib import Path
 
 from rich.console import Console
 
-from pipeline.analytics import filter_of_comparison, filter_of_mat, predict, prediction_tables
+from pipeline.analytics.models.prediction import filter_of_comparison, filter_of_mat, predict
 from pipeline.analytics.options import read_options
 from pipeline.analytics.settings import FilterSettings, FlowSettings
+from pipeline.analytics.tables.rows import prediction_tables
 from pipeline.case import read_case
 from pipeline.cli.tables import plain_table
-from pipeline.mat import generate
-from pipeline.run import Run, mat_predictor
-from pipeline.store import disk_trouble_explained
+from pipeline.line.run import Run, mat_predictor
+from pipeline.line.store import disk_trouble_explained
+from pipeline.mat.generate import generate
 
 
 def predict_filter(source: Path | None, given: Mapping[str, str], as_json: bool, plot: Path | None) -> None:
@@ -25,7 +26,7 @@ def predict_filter(source: Path | None, given: Mapping[str, str], as_json: bool,
     medium, flow = read_options(given, *_known(source)) if source else read_options(given)
     if plot is not None:
         # matplotlib takes a second to load, for nobody who wants numbers only
-        from pipeline.analytics.plots import plot_prediction, save_figure
+        from pipeline.analytics.tables.plots import plot_prediction, save_figure
 
         with disk_trouble_explained(plot):
             save_figure(plot_prediction(medium, flow), plot)

@@ -13,8 +13,8 @@ from pipeline.case import read_case
 from pipeline.cli.listen import listening
 from pipeline.cli.tables import outcome_table, result_tables
 from pipeline.errors import CaseError
-from pipeline.report import PAGE
-from pipeline.run import LAST, STAGES, Run, run
+from pipeline.line.run import LAST, STAGES, Run, run
+from pipeline.report.page.page import PAGE
 
 
 def run_case(

@@ -14,7 +14,7 @@ from pipeline.case import Case, override, validate_as
 from pipeline.cli.listen import listening
 from pipeline.cli.tables import outcome_table, solution_table
 from pipeline.errors import CaseError, StageError
-from pipeline.run import Run, run
+from pipeline.line.run import Run, run
 from pipeline.solve.settings import SolveSettings
 
 SOLVE = "solve"

@@ -12,8 +12,8 @@ from pydantic import BaseModel
 from pipeline.case import Case
 from pipeline.cli.describe import Key, keys, summary
 from pipeline.errors import CaseError, StageError
+from pipeline.line.store import disk_trouble_explained
 from pipeline.mat.settings import ArraySettings, BoxSettings, FileSettings, LayeredSettings, Stop
-from pipeline.store import disk_trouble_explained
 
 _WIDTH = 110
 _GENERATORS: dict[str, type[BaseModel]] = {

@@ -10,9 +10,9 @@ from rich.console import Console
 from pipeline.cli.listen import listening
 from pipeline.cli.tables import plain_table
 from pipeline.errors import CaseError, StageError
-from pipeline.store import disk_trouble_explained
-from pipeline.study import StudyResult, carry_out_study, read_study
-from pipeline.study.settings import Study
+from pipeline.line.store import disk_trouble_explained
+from pipeline.study.settings import Study, read_study
+from pipeline.study.study import StudyResult, carry_out_study
 from pipeline.study.tables import FAILURES, shown, write_tables
 
 PLOT, PICTURES = "plot.svg", "pictures.png"
@@ -50,7 +50,7 @@ def run_study(
 def _drawn(study: Study, result: StudyResult, folder: Path, plot: Path | None) -> list[Path]:
     written = []
     if any(each.n for point in result.points for each in point.estimates):
-        from pipeline.analytics.plots import save_figure
+        from pipeline.analytics.tables.plots import save_figure
         from pipeline.study.plot import plot_study
 
         save_figure(plot_study(result), plot or folder / PLOT)

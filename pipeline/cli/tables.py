@@ -9,12 +9,12 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
-from pipeline.analytics import comparison_tables
-from pipeline.analytics.tables import length
+from pipeline.analytics.tables.rows import comparison_tables, length
 from pipeline.cli.doctor import Finding
-from pipeline.data import QualityReport, Solution
+from pipeline.line.run import Outcome, Run
+from pipeline.nouns.flow import Solution
+from pipeline.nouns.quality import QualityReport
 from pipeline.quality.table import HEADER, rows, summary
-from pipeline.run import Outcome, Run
 
 
 def findings_table(findings: Iterable[Finding]) -> Table:

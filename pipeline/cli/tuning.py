@@ -12,8 +12,8 @@ from rich.console import Console
 from pipeline.case import read_case
 from pipeline.cli.listen import listening
 from pipeline.cli.tables import plain_table
-from pipeline.design import Tuned, read_targets, tune
-from pipeline.design.targets import readable
+from pipeline.design.targets import read_targets, readable
+from pipeline.design.tune import Tuned, tune
 from pipeline.errors import CaseError
 
 _KEEPABLE = ("relaxation_slope", "spacing")

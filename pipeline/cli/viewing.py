@@ -8,12 +8,12 @@ from rich.console import Console
 
 from pipeline.cli.listen import listening
 from pipeline.errors import CaseError, StageError
-from pipeline.report import subject_of
-from pipeline.report.painter import possible
-from pipeline.report.render import Painting, screenless
-from pipeline.report.scenes import SCENES, Subject, show
-from pipeline.run import Run, content_of, report
-from pipeline.store import disk_trouble_explained
+from pipeline.line.run import Run, content_of, report
+from pipeline.line.store import disk_trouble_explained
+from pipeline.report.page.page import subject_of
+from pipeline.report.views.painter import possible
+from pipeline.report.views.render import Painting, screenless
+from pipeline.report.views.scenes import SCENES, Subject, show
 
 PICTURES = "pictures"
 """Folder of a run that pictures go into when nobody names a file."""
@@ -54,8 +54,8 @@ def view_run(folder: Path, scene: str | None, screenshot: Path | None) -> None:
 
 def write_scene_of_run(folder: Path, path: Path) -> None:
     """Write what a run has as a scene for a browser."""
-    from pipeline.report.layers import layers_of_run
-    from pipeline.report.scene_file import write_scene
+    from pipeline.report.views.layers import layers_of_run
+    from pipeline.report.views.scene_file import write_scene
 
     out = Console()
     with listening(out, False) as tell:

@@ -11,10 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.analytics import predictor
+from pipeline.analytics.models.growth import predictor
 from pipeline.analytics.settings import FlowSettings
-from pipeline.data import Floats, Mat
-from pipeline.mat import Stop
+from pipeline.mat.settings import Stop
+from pipeline.nouns.arrays import Floats
+from pipeline.nouns.fibers import Mat
 
 
 @dataclass(frozen=True, eq=False, slots=True)

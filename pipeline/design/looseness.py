@@ -4,7 +4,7 @@
 
 from collections.abc import Iterator
 
-from pipeline.mat import LayeredSettings
+from pipeline.mat.settings import LayeredSettings
 
 SLOPES = (0.0, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.45, 0.7, 1.0)
 """Relaxation slopes [-] at which a search looks first."""

@@ -10,7 +10,8 @@ from pipeline.analytics.settings import FlowSettings
 from pipeline.design.history import History, history
 from pipeline.design.looseness import Place
 from pipeline.design.targets import Target, readable
-from pipeline.mat import LayeredSettings, Stop, generate
+from pipeline.mat.generate import generate
+from pipeline.mat.settings import LayeredSettings, Stop
 from pipeline.progress import Progress
 
 TOLERANCE = 1e-3

@@ -19,7 +19,7 @@ from pipeline.design.looseness import Place, between, stretches
 from pipeline.design.search import Search, scale
 from pipeline.design.targets import QUANTITIES, Target, readable
 from pipeline.errors import CaseError
-from pipeline.mat import LayeredSettings
+from pipeline.mat.settings import LayeredSettings
 from pipeline.progress import Progress, silent
 
 _STEPS_AWAY = 3

@@ -8,12 +8,14 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from pipeline.data import FIBERS, INLET, OUTLET, PATCHES, SIDES, FluidDomain, Surface
 from pipeline.enclosure.settings import EnclosureSettings
 from pipeline.errors import CaseError, StageError
 from pipeline.geometry.box import Box
 from pipeline.geometry.solids import box_minus
 from pipeline.geometry.triangles import Floats, Ints, connected_pieces, signed_volumes, winding_number
+from pipeline.nouns.domain import FluidDomain
+from pipeline.nouns.patches import FIBERS, INLET, OUTLET, PATCHES, SIDES
+from pipeline.nouns.surface import Surface
 from pipeline.progress import Progress, silent
 
 _PLANES = (*SIDES, INLET, OUTLET)

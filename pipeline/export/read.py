@@ -4,11 +4,11 @@
 
 from pathlib import Path
 
-from pipeline.data import FaceMesh
 from pipeline.errors import StageError
-from pipeline.export.read_exchange import read_exchange
-from pipeline.export.read_fluent import read_fluent
+from pipeline.export.formats.read_exchange import read_exchange
+from pipeline.export.formats.read_fluent import read_fluent
 from pipeline.machine import memory_bounded
+from pipeline.nouns.mesh import FaceMesh
 from pipeline.openfoam.read import FILES, LARGEST_FILE, mesh_folder, read_openfoam
 
 

@@ -5,14 +5,17 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from pipeline.data import FaceMesh, Floats, Flow
 from pipeline.errors import StageError
-from pipeline.export.exchange import SUFFIXES, write_exchange
-from pipeline.export.fluent import write_fluent
-from pipeline.export.openfoam import FiberSlip, write_openfoam
+from pipeline.export.formats.exchange import SUFFIXES, write_exchange
+from pipeline.export.formats.fluent import write_fluent
+from pipeline.export.formats.openfoam.case import write_openfoam
+from pipeline.export.formats.openfoam.slip import FiberSlip
+from pipeline.export.formats.su2 import write_su2
+from pipeline.export.formats.vtk import write_vtk
 from pipeline.export.settings import ExportSettings
-from pipeline.export.su2 import write_su2
-from pipeline.export.vtk import write_vtk
+from pipeline.nouns.arrays import Floats
+from pipeline.nouns.flow import Flow
+from pipeline.nouns.mesh import FaceMesh
 from pipeline.progress import Progress, silent
 
 _TETRAHEDRA_ONLY = {*SUFFIXES, "su2"}

@@ -158,7 +158,7 @@ def polyhedra(points: Floats, corners: Ints, offsets: Ints, owner: Ints, neighbo
     ----------
     points : (n, 3) array [m]
     corners, offsets, owner, neighbour : int arrays
-        As in `pipeline.data.FaceMesh`.
+        As in `pipeline.nouns.mesh.FaceMesh`.
     cells : int
 
     Returns

@@ -41,7 +41,7 @@ def section(
     ----------
     points : (n, 3) array
     corners, offsets, owner, neighbour : int arrays
-        As in `pipeline.data.FaceMesh`.
+        As in `pipeline.nouns.mesh.FaceMesh`.
     axis : int
         0, 1 or 2.
     place : float

@@ -4,9 +4,9 @@
 
 import numpy as np
 
-from pipeline.data import Mat
 from pipeline.geometry.box import Box
 from pipeline.mat.settings import ArraySettings
+from pipeline.nouns.fibers import Mat
 
 
 def array(settings: ArraySettings) -> Mat:

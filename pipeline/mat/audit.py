@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.data import Mat
 from pipeline.mat.neighbors import near_fibers
+from pipeline.nouns.fibers import Mat
 
 _BESIDE = 0.1
 """Pairs are looked at up to this share of the mean radius beyond what is allowed, to tell how clear the mat is."""
@@ -56,7 +56,8 @@ def audit(mat: Mat, spacing: float = 0.0) -> Audit:
 
     Examples
     --------
-    >>> from pipeline.mat import LayeredSettings, Stop, generate
+    >>> from pipeline.mat.generate import generate
+    >>> from pipeline.mat.settings import LayeredSettings, Stop
     >>> asked = {"side": 2e-5, "fiber_diameter": 1e-6, "relaxation_slope": 0.15, "stop": Stop(count=20)}
     >>> audit(generate(LayeredSettings(**asked, contact="clear"))).violations
     0

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.data import Mat
 from pipeline.errors import CaseError
 from pipeline.geometry.box import Box
 from pipeline.geometry.triangles import Floats
+from pipeline.nouns.fibers import Mat
 from pipeline.units import parse
 
 _COLUMNS = ("fiber", "x", "y", "z", "radius")

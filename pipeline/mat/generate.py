@@ -4,10 +4,10 @@
 
 import numpy as np
 
-from pipeline.data import Mat
 from pipeline.mat.array import array
 from pipeline.mat.settings import ArraySettings, BoxSettings, FileSettings, LayeredSettings
 from pipeline.mat.tally import Predict
+from pipeline.nouns.fibers import Mat
 from pipeline.progress import Progress, silent
 
 

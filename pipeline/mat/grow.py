@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from pipeline.data import Mat
 from pipeline.errors import CaseError
 from pipeline.geometry.box import Box
 from pipeline.geometry.triangles import Floats
@@ -15,6 +14,7 @@ from pipeline.mat.diameters import draw_diameters
 from pipeline.mat.pile import Pile, as_chord, drop
 from pipeline.mat.settings import BoxSettings, LayeredSettings
 from pipeline.mat.tally import Predict, Tally
+from pipeline.nouns.fibers import Mat
 from pipeline.progress import Progress
 
 _BATCH = 256

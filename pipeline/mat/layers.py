@@ -4,9 +4,9 @@
 
 import numpy as np
 
-from pipeline.data import Mat
 from pipeline.geometry.compiled import compiled
 from pipeline.geometry.triangles import Floats
+from pipeline.nouns.fibers import Mat
 
 
 def solidity_profile(mat: Mat, share: Floats, layers: int) -> Floats:

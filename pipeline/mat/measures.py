@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.data import Mat
 from pipeline.geometry.triangles import Floats
 from pipeline.mat.neighbors import near_fibers
+from pipeline.nouns.fibers import Mat
 
 CONTACT_GAP = 0.01
 """Fibers count as touching whose surfaces are this share of the sum of their radii apart, or less."""
@@ -116,7 +116,8 @@ def measure(mat: Mat) -> MatMeasures:
 
     Examples
     --------
-    >>> from pipeline.mat import ArraySettings, generate
+    >>> from pipeline.mat.generate import generate
+    >>> from pipeline.mat.settings import ArraySettings
     >>> array = generate(ArraySettings(arrangement="square", solidity=0.1, fiber_diameter=1e-6, rows=4))
     >>> round(measure(array).solidity, 12)
     0.1

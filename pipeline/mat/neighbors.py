@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pipeline.data import Mat
 from pipeline.geometry.triangles import Floats, Ints
+from pipeline.nouns.fibers import Mat
 
 
 class FiberPairs(NamedTuple):

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from itertools import pairwise
 from typing import Literal
 
-from pipeline.data import Floats, Ints
+from pipeline.nouns.arrays import Floats, Ints
 
 Encoding = Literal["binary", "ascii"]
 

@@ -8,8 +8,9 @@ C and N the centers of its owner and neighbour, d = N - C, V a cell's volume. Ea
 
 import numpy as np
 
-from pipeline.data import FaceMesh, Floats
 from pipeline.geometry.polyhedra import Polyhedra, by_size, sum_per_cell
+from pipeline.nouns.arrays import Floats
+from pipeline.nouns.mesh import FaceMesh
 
 TINY = 1e-150
 """Keeps a quotient of nothing by nothing at 0, as OpenFOAM's ROOTVSMALL."""

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from pipeline.data import FaceMesh, Ints, Patch
 from pipeline.errors import StageError
+from pipeline.nouns.arrays import Ints
+from pipeline.nouns.mesh import FaceMesh, Patch
 
 _COMMENT = re.compile(rb"/\*.*?\*/|//[^\n]*", re.DOTALL)
 _HEADER = re.compile(rb"FoamFile\s*\{(?P<body>.*?)\}\s*", re.DOTALL)

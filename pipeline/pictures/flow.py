@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pipeline.data import FIBERS, Floats
 from pipeline.errors import StageError
+from pipeline.nouns.arrays import Floats
+from pipeline.nouns.patches import FIBERS
 from pipeline.pictures.render import _MICRO, Image, _plotter, _shot
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pipeline.data import Mat
 from pipeline.geometry.box import Box
+from pipeline.nouns.fibers import Mat
 from pipeline.pictures.render import COLORS, INLET_COLOR, OUTLET_COLOR, View, duct_view, plan_view
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from pipeline.data import Mat
 from pipeline.geometry.box import Box
+from pipeline.nouns.fibers import Mat
 
 if TYPE_CHECKING:
     import pyvista as pv

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.data import FaceMesh, Floats, Metric, QualityReport
 from pipeline.geometry.polyhedra import Polyhedra
+from pipeline.nouns.arrays import Floats
+from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.quality import Metric, QualityReport
 from pipeline.openfoam import metrics as definitions
 from pipeline.progress import Progress, silent
 from pipeline.quality.settings import QualitySettings

@@ -4,7 +4,8 @@
 
 import numpy as np
 
-from pipeline.data import FaceMesh, Ints
+from pipeline.nouns.arrays import Ints
+from pipeline.nouns.mesh import FaceMesh
 
 POLYHEDRA = "polyhedra"
 _FACES_OF = {"tetrahedra": (4, 0), "pyramids": (4, 1), "prisms": (2, 3), "hexahedra": (0, 6)}

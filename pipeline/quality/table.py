@@ -2,7 +2,7 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-from pipeline.data import Metric, QualityReport
+from pipeline.nouns.quality import Metric, QualityReport
 
 HEADER = ("metric", "of", "min", "mean", "99 %", "max", "limit", "beyond")
 

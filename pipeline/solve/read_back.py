@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.data import Floats
+from pipeline.nouns.arrays import Floats
 
 PRESSURE_IN, PRESSURE_OUT, FLOW_IN, FLOW_OUT, DRAG = (
     "inletPressure",

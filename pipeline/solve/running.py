@@ -13,8 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.data import Floats, Flow, Solution
 from pipeline.errors import StageError
+from pipeline.nouns.arrays import Floats
+from pipeline.nouns.flow import Flow, Solution
 from pipeline.openfoam.environment import openfoam_missing
 from pipeline.openfoam.process import call, running, tail
 from pipeline.progress import Progress, silent

@@ -2,7 +2,7 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-from pipeline.data import Floats
+from pipeline.nouns.arrays import Floats
 
 
 def change(values: Floats, window: int) -> float:

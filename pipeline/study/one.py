@@ -5,10 +5,10 @@
 import dataclasses
 import shutil
 
-from pipeline import store
-from pipeline.analytics import filter_of_mat, predict
+from pipeline.analytics.models.prediction import filter_of_mat, predict
 from pipeline.errors import CaseError
-from pipeline.run import Run, run
+from pipeline.line import store
+from pipeline.line.run import Run, run
 from pipeline.study.plan import Task
 from pipeline.study.quantity import NO_ANSWER, PREDICTED, Results, stage_results
 

@@ -5,9 +5,9 @@
 from pathlib import Path
 
 from pipeline.case import read_case
-from pipeline.mat import generate
-from pipeline.pictures import contact_sheet, write_png
-from pipeline.run import mat_predictor
+from pipeline.line.run import mat_predictor
+from pipeline.mat.generate import generate
+from pipeline.pictures.panels import contact_sheet, write_png
 from pipeline.study.settings import Study
 from pipeline.study.tables import shown
 

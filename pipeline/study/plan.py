@@ -7,11 +7,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from pipeline import store
 from pipeline.case import Case, read_case
 from pipeline.errors import CaseError
-from pipeline.mat import ArraySettings, FileSettings
-from pipeline.run import LINE, STAGES
+from pipeline.line import store
+from pipeline.line.run import LINE, STAGES
+from pipeline.mat.settings import ArraySettings, FileSettings
 from pipeline.study.settings import Study
 
 

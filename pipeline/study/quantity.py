@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pipeline import store
 from pipeline.errors import CaseError
+from pipeline.line import store
 from pipeline.units import parse
 
 NO_ANSWER = "no_answer"

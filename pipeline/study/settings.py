@@ -12,7 +12,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 
 from pipeline.case import read_toml
 from pipeline.errors import CaseError
-from pipeline.run import STAGES
+from pipeline.line.run import STAGES
 from pipeline.study.quantity import PREDICTED, Quantity, read_quantity
 
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pipeline import store
 from pipeline.errors import CaseError, FibertwinError
+from pipeline.line import store
 from pipeline.progress import Progress, silent
 from pipeline.study.one import read_result
 from pipeline.study.plan import Task, plan

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.data import Surface
+from pipeline.nouns.surface import Surface
 
 _PLY_HEADER = """\
 ply

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.data import Mat, Surface
 from pipeline.geometry.crossings import self_intersections
 from pipeline.geometry.solids import volume_within
 from pipeline.geometry.triangles import Ints, area_vectors, connected_pieces, signed_volumes
+from pipeline.nouns.fibers import Mat
+from pipeline.nouns.surface import Surface
 from pipeline.progress import Progress, silent
 from pipeline.surface.settings import SurfaceSettings
 from pipeline.surface.tubes import polygon_radius

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.data import Surface
+from pipeline.nouns.surface import Surface
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from pipeline.data import Floats, Ints
 from pipeline.geometry.crossings import bins, crosses_any
+from pipeline.nouns.arrays import Floats, Ints
 
 _SHARPEST_WEDGE = -0.9  # cosine between the normals of neighbors: a wedge of 26 degrees
 

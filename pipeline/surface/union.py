@@ -4,11 +4,12 @@
 
 import numpy as np
 
-from pipeline.data import Mat, Pieces, Surface
 from pipeline.errors import StageError
 from pipeline.geometry.box import Box
 from pipeline.geometry.solids import Body, unite_within
 from pipeline.geometry.triangles import Floats, Ints
+from pipeline.nouns.fibers import Mat, Pieces
+from pipeline.nouns.surface import Surface
 from pipeline.progress import Progress, silent
 from pipeline.surface.settings import SurfaceSettings
 from pipeline.surface.tubes import Ends, polygon_radius, tubes

@@ -9,17 +9,17 @@ import math
 import numpy as np
 import pytest
 
-from pipeline.analytics.comparison import compare, nominal_solidity
-from pipeline.analytics.diameters import mat_diameters
-from pipeline.analytics.prediction import filter_of_comparison, filter_of_mat, predict
-from pipeline.analytics.pressure_drop import davies, drag_from_coefficient, effective_fiber_diameter
-from pipeline.analytics.pressure_models import MODELS
+from pipeline.analytics.formulas.diameters import mat_diameters
+from pipeline.analytics.formulas.pressure_drop import davies, drag_from_coefficient, effective_fiber_diameter
+from pipeline.analytics.formulas.slip import knudsen, kuwabara_slip, slip_length
+from pipeline.analytics.models.comparison import compare, nominal_solidity
+from pipeline.analytics.models.prediction import filter_of_comparison, filter_of_mat, predict
+from pipeline.analytics.models.pressure_models import MODELS
 from pipeline.analytics.settings import FlowSettings
-from pipeline.analytics.slip import knudsen, kuwabara_slip, slip_length
-from pipeline.analytics.tables import comparison_tables
-from pipeline.data import Mat
+from pipeline.analytics.tables.rows import comparison_tables
 from pipeline.errors import CaseError
 from pipeline.geometry.box import Box
+from pipeline.nouns.fibers import Mat
 from tests.surface.mats import CROSSING
 
 SIDE, THICKNESS = 20e-6, 10e-6

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from pipeline.analytics.growth import Predictor, predictor
+from pipeline.analytics.models.growth import Predictor, predictor
 from pipeline.analytics.settings import FlowSettings
 from pipeline.errors import CaseError
 

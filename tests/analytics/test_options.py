@@ -5,9 +5,9 @@
 import pytest
 
 from pipeline.analytics.options import read_options
-from pipeline.analytics.paper_figures import FIGURE_10
 from pipeline.analytics.settings import FlowSettings
 from pipeline.errors import CaseError
+from validation.paper_figures import FIGURE_10
 
 TYPED = {
     "solidity": "9.48 %",

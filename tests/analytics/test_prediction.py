@@ -14,17 +14,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from pipeline.analytics import air
-from pipeline.analytics.paper_figures import FIGURE_10, FIGURE_11, FIGURE_12, SLOW, write_paper_figures
-from pipeline.analytics.plots import plot_prediction, save_figure
-from pipeline.analytics.polydisperse import lognormal_mean, mass_median
-from pipeline.analytics.prediction import predict
-from pipeline.analytics.pressure_models import MODELS
+from pipeline.analytics.formulas import air
+from pipeline.analytics.formulas.polydisperse import lognormal_mean, mass_median
+from pipeline.analytics.models.prediction import predict
+from pipeline.analytics.models.pressure_models import MODELS
+from pipeline.analytics.models.single_fiber import MECHANISMS
 from pipeline.analytics.settings import FilterSettings, FlowSettings
-from pipeline.analytics.single_fiber import MECHANISMS
-from pipeline.analytics.tables import prediction_tables
+from pipeline.analytics.tables.plots import plot_prediction, save_figure
+from pipeline.analytics.tables.rows import prediction_tables
 from pipeline.errors import CaseError
 from pipeline.units import FROM_FILE
+from validation.paper_figures import FIGURE_10, FIGURE_11, FIGURE_12, SLOW, write_paper_figures
 
 GALLERY = Path(__file__).parents[2] / "docs" / "gallery"
 

@@ -10,11 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.special import k1, kv, kvp
 
-from pipeline.analytics import pressure_drop as formulas
-from pipeline.analytics import slip, spielman_goren
-from pipeline.analytics.pressure_models import MODELS, pressure_model
+from pipeline.analytics.formulas import pressure_drop as formulas
+from pipeline.analytics.formulas import slip, spielman_goren
+from pipeline.analytics.models.pressure_models import MODELS, pressure_model
 from pipeline.errors import CaseError
-from pipeline.verify.exact import hexagonal_drag, square_drag
+from validation.exact import hexagonal_drag, square_drag
 
 EULER = 0.5772156649015329
 

@@ -10,13 +10,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import constants
 
-from pipeline.analytics import cell, mechanisms, merit, particles, penetrating, single_fiber, slip
-from pipeline.analytics.paper_figures import FAST, FIGURE_10, FIGURE_11, FIGURE_12, SLOW, TABLE_A6
-from pipeline.analytics.prediction import efficiency_over, predict, single_fiber_at
-from pipeline.analytics.pressure_drop import davies, pressure_drop
+from pipeline.analytics.formulas import cell, mechanisms, merit, particles, penetrating, slip
+from pipeline.analytics.formulas.pressure_drop import davies, pressure_drop
+from pipeline.analytics.models import single_fiber
+from pipeline.analytics.models.prediction import efficiency_over, predict, single_fiber_at
 from pipeline.analytics.settings import FilterSettings, FlowSettings
-from pipeline.data import Flow
 from pipeline.errors import CaseError
+from pipeline.nouns.flow import Flow
+from validation.paper_figures import FAST, FIGURE_10, FIGURE_11, FIGURE_12, SLOW, TABLE_A6
 
 # -- Table A6 ------------------------------------------------------------------------------------------------------
 

@@ -9,11 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.data import PATCHES, FaceMesh, Floats, Ints, TetMesh
-from pipeline.export import export
-from pipeline.export.openfoam import write_openfoam
+from pipeline.export.formats.openfoam.case import write_openfoam
 from pipeline.export.settings import ExportSettings
+from pipeline.export.write import export
 from pipeline.geometry.box import Box
+from pipeline.nouns.arrays import Floats, Ints
+from pipeline.nouns.mesh import FaceMesh, TetMesh
+from pipeline.nouns.patches import PATCHES
 from tests.cli.conftest import Fibertwin
 from tests.openfoam import AIR, foam
 from tests.quality.test_checkmesh import BLOCK, SNAPPY

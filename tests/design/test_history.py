@@ -2,11 +2,12 @@
 
 import pytest
 
-from pipeline.analytics import filter_of_mat, predict
+from pipeline.analytics.models.prediction import filter_of_mat, predict
 from pipeline.analytics.settings import FlowSettings
 from pipeline.design.history import history
-from pipeline.mat import LayeredSettings, Stop, generate, measure
-from pipeline.mat.settings import Constant
+from pipeline.mat.generate import generate
+from pipeline.mat.measures import measure
+from pipeline.mat.settings import Constant, LayeredSettings, Stop
 
 
 @pytest.fixture(scope="module", name="pile")

@@ -2,7 +2,7 @@
 
 import pytest
 
-from pipeline.design import read_targets
+from pipeline.design.targets import read_targets
 from pipeline.errors import CaseError
 
 

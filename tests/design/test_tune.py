@@ -6,7 +6,8 @@ from typing import Any
 import pytest
 
 from pipeline.case import Case, validate
-from pipeline.design import Target, read_targets, tune
+from pipeline.design.targets import Target, read_targets
+from pipeline.design.tune import tune
 from pipeline.errors import CaseError
 
 
@@ -27,7 +28,8 @@ def test_solidity_and_thickness_are_met_together() -> None:
 
 
 def test_what_tune_promises_is_what_the_case_gives() -> None:
-    from pipeline.mat import generate, measure
+    from pipeline.mat.generate import generate
+    from pipeline.mat.measures import measure
 
     case = pile()
     tuned = tune(case, read_targets(["solidity=8 %", "thickness=30 um"]), seeds=3)

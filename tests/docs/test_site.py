@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from pipeline.analytics.paper_figures import write_paper_figures
 from tests.report.conftest import rendering as rendering  # the fixture
+from validation.paper_figures import write_paper_figures
 
 ROOT = Path(__file__).parents[2]
 GALLERY = ROOT / "docs/gallery"

@@ -5,11 +5,12 @@
 import numpy as np
 import pytest
 
-from pipeline.data import FIBERS, PATCHES, Mat
 from pipeline.enclosure.duct import enclose, fiber_spacing
 from pipeline.enclosure.settings import EnclosureSettings
 from pipeline.errors import CaseError, StageError
 from pipeline.geometry.triangles import area_vectors
+from pipeline.nouns.fibers import Mat
+from pipeline.nouns.patches import FIBERS, PATCHES
 from pipeline.surface.settings import SurfaceSettings
 from pipeline.surface.union import unite
 from tests.surface.mats import CROSSING, EVERY_MAT, RADIUS, SIDE, WRAPPING, WRAPPING_A_CORNER, mat_of

@@ -10,11 +10,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.data import FluidDomain, TetMesh
 from pipeline.errors import StageError
-from pipeline.export.openfoam import FiberSlip, fiber_radius, read_openfoam, write_openfoam
+from pipeline.export.formats.openfoam.case import write_openfoam
+from pipeline.export.formats.openfoam.slip import FiberSlip, fiber_radius
 from pipeline.export.settings import ExportSettings
-from pipeline.solve import Bed, SolveSettings, solve
+from pipeline.nouns.domain import FluidDomain
+from pipeline.nouns.mesh import TetMesh
+from pipeline.openfoam.read import read_openfoam
+from pipeline.solve.running import Bed, solve
+from pipeline.solve.settings import SolveSettings
 from tests.openfoam import AIR, foam
 from tests.sample_meshes import NO_PIECES, cylinder, duct
 

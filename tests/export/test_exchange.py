@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from pipeline.data import FaceMesh
-from pipeline.export import export
 from pipeline.export.read import read_mesh
 from pipeline.export.settings import ExportSettings, Format
+from pipeline.export.write import export
+from pipeline.nouns.mesh import FaceMesh
 from tests.openfoam import AIR, figures, foam, patches
 from tests.sample_meshes import duct
 

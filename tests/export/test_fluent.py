@@ -6,13 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.data import FaceMesh, Patch
 from pipeline.errors import StageError
-from pipeline.export.fluent import write_fluent
-from pipeline.export.openfoam import read_openfoam, write_openfoam
+from pipeline.export.formats.fluent import write_fluent
+from pipeline.export.formats.openfoam.case import write_openfoam
 from pipeline.export.read import read_mesh
 from pipeline.export.settings import ExportSettings
 from pipeline.export.write import export
+from pipeline.nouns.mesh import FaceMesh, Patch
+from pipeline.openfoam.read import read_openfoam
 from tests.openfoam import AIR, figures, foam, patches
 from tests.quality.test_checkmesh import BLOCK
 from tests.sample_meshes import duct

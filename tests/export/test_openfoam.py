@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.data import FaceMesh, Patch, TetMesh
 from pipeline.errors import StageError
-from pipeline.export import export
-from pipeline.export.openfoam import read_openfoam, write_openfoam
+from pipeline.export.formats.openfoam.case import write_openfoam
 from pipeline.export.settings import ExportSettings, Format
+from pipeline.export.write import export
+from pipeline.nouns.mesh import FaceMesh, Patch, TetMesh
 from pipeline.openfoam.foam_file import Encoding
+from pipeline.openfoam.read import read_openfoam
 from tests.openfoam import AIR, figures, foam, patches
 from tests.sample_meshes import duct
 

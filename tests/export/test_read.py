@@ -11,11 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pipeline.errors import StageError
-from pipeline.export import export
+from pipeline.export.formats.read_exchange import _faces
+from pipeline.export.formats.vtk import write_vtk
 from pipeline.export.read import read_mesh
-from pipeline.export.read_exchange import _faces
 from pipeline.export.settings import ExportSettings, Format
-from pipeline.export.vtk import write_vtk
+from pipeline.export.write import export
 from tests.openfoam import AIR
 from tests.quality.test_kinds import beside_smaller
 from tests.sample_meshes import duct

@@ -10,9 +10,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from pipeline.errors import StageError
-from pipeline.export.openfoam import read_openfoam, write_openfoam
+from pipeline.export.formats.openfoam.case import write_openfoam
 from pipeline.export.settings import ExportSettings
 from pipeline.openfoam.foam_file import Encoding
+from pipeline.openfoam.read import read_openfoam
 from tests.openfoam import AIR
 from tests.sample_meshes import duct
 

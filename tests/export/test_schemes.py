@@ -2,7 +2,7 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-from pipeline.export.openfoam.dictionaries import format_fv_schemes
+from pipeline.export.formats.openfoam.dictionaries import format_fv_schemes
 
 
 def test_least_squares_and_the_full_correction_are_left_out_beside_cyclic_patches() -> None:

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.data import FaceMesh, Patch
-from pipeline.export.vtk import volume_grid, write_vtk
+from pipeline.export.formats.vtk import volume_grid, write_vtk
+from pipeline.nouns.mesh import FaceMesh, Patch
 from tests.sample_meshes import duct
 
 

@@ -5,8 +5,9 @@
 import numpy as np
 import pytest
 
-from pipeline.data import FaceMesh, Floats
 from pipeline.geometry.sections import Section, section
+from pipeline.nouns.arrays import Floats
+from pipeline.nouns.mesh import FaceMesh
 from tests.quality.test_kinds import beside_smaller
 from tests.sample_meshes import cylinder, duct
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from pipeline.geometry.adjacency import cells_at_vertices, neighbors
 from pipeline.geometry.tets import FACES, boundary, volume_between, volumes
 from pipeline.geometry.triangles import Floats, enclosed_volume
-from tests.tetmesh.boxes import kuhn_box
+from tests.mesh.boxes import kuhn_box
 
 heights = st.floats(-1.0, 2.0, allow_nan=False)
 

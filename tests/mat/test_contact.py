@@ -10,14 +10,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.data import Mat
 from pipeline.errors import CaseError
 from pipeline.geometry.box import Box
 from pipeline.geometry.triangles import Floats
-from pipeline.mat import LayeredSettings, Stop, audit, generate
+from pipeline.mat.audit import audit
+from pipeline.mat.generate import generate
 from pipeline.mat.neighbors import near_fibers
 from pipeline.mat.pile import Pile, as_chord, drop
-from pipeline.mat.settings import Constant
+from pipeline.mat.settings import Constant, LayeredSettings, Stop
+from pipeline.nouns.fibers import Mat
 
 FINE_AND_COARSE = {
     "distribution": "mixture",

@@ -8,18 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pipeline.data import Mat
 from pipeline.errors import CaseError
-from pipeline.mat import (
-    ArraySettings,
-    FileSettings,
-    LayeredSettings,
-    generate,
-    measure,
-    read_fibers,
-    write_fibers,
-    write_spaceclaim,
-)
+from pipeline.mat.exchange import read_fibers, write_fibers, write_spaceclaim
+from pipeline.mat.generate import generate
+from pipeline.mat.measures import measure
+from pipeline.mat.settings import ArraySettings, FileSettings, LayeredSettings
+from pipeline.nouns.fibers import Mat
 
 
 def small_mat(**changes: Any) -> Mat:

@@ -7,7 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from pipeline.mat import ArraySettings, LayeredSettings, Stop, generate, measure
+from pipeline.mat.generate import generate
+from pipeline.mat.measures import measure
+from pipeline.mat.settings import ArraySettings, LayeredSettings, Stop
 
 
 def figure_10(seed: int = 0, **changes: object) -> LayeredSettings:

@@ -9,12 +9,13 @@ import math
 import numpy as np
 import pytest
 
-from pipeline.data import Mat
 from pipeline.geometry.box import Box
-from pipeline.mat import ArraySettings, LayeredSettings, Stop, generate, measure
+from pipeline.mat.generate import generate
 from pipeline.mat.layers import solidity_profile
+from pipeline.mat.measures import measure
 from pipeline.mat.relief import relief
-from pipeline.mat.settings import Constant
+from pipeline.mat.settings import ArraySettings, Constant, LayeredSettings, Stop
+from pipeline.nouns.fibers import Mat
 
 
 def mat_of(nodes: list[list[float]], radius: float, slab: Box, periodic: bool = False) -> Mat:

@@ -8,10 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pipeline.analytics import predictor
+from pipeline.analytics.models.growth import predictor
 from pipeline.analytics.settings import FlowSettings
 from pipeline.errors import CaseError
-from pipeline.mat import BoxSettings, LayeredSettings, MatMeasures, Stop, generate, measure, report_stop
+from pipeline.mat.generate import generate
+from pipeline.mat.measures import MatMeasures, measure
+from pipeline.mat.settings import BoxSettings, LayeredSettings, Stop
+from pipeline.mat.tally import report_stop
 
 SLOW = FlowSettings(face_velocity=0.025, preset="paper", pressure_model="davies")
 """The air of Figs. 10 to 13."""

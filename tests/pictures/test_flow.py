@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from pipeline.errors import StageError
-from pipeline.export.openfoam.case import write_openfoam
-from pipeline.pictures import write_png
+from pipeline.export.formats.openfoam.case import write_openfoam
 from pipeline.pictures.flow import read_flow, slice_figure, streamline_figure
-from pipeline.solve import Bed, SolveSettings, solve
+from pipeline.pictures.panels import write_png
+from pipeline.solve.running import Bed, solve
+from pipeline.solve.settings import SolveSettings
 from tests.openfoam import AIR
 from tests.sample_meshes import duct
 

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.data import Mat
 from pipeline.geometry.box import Box
-from pipeline.pictures import contact_sheet, duct_figure, mat_figure, write_png
+from pipeline.nouns.fibers import Mat
+from pipeline.pictures.panels import contact_sheet, duct_figure, mat_figure, write_png
 from pipeline.pictures.render import plan_view
 
 MICRO = 1e-6

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.data import FaceMesh
-from pipeline.export import read_mesh
-from pipeline.export.openfoam import read_openfoam, write_openfoam
-from pipeline.quality import judge
+from pipeline.export.formats.openfoam.case import write_openfoam
+from pipeline.export.read import read_mesh
+from pipeline.nouns.mesh import FaceMesh
+from pipeline.openfoam.read import read_openfoam
+from pipeline.quality.judge import judge
 from pipeline.quality.kinds import cells_by_kind
 from tests.openfoam import AIR, figures, foam, patches
 from tests.sample_meshes import duct

@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from pipeline.data import FaceMesh, Patch, TetMesh
 from pipeline.geometry.box import Box
 from pipeline.geometry.cells import cell_faces, polygons_of
-from pipeline.quality import QualitySettings, cell_fields, judge, measure
+from pipeline.nouns.mesh import FaceMesh, Patch, TetMesh
+from pipeline.quality.judge import cell_fields, judge, measure
+from pipeline.quality.settings import QualitySettings
 from tests.sample_meshes import boundary_of, duct
 
 

@@ -8,10 +8,11 @@ import meshio
 import numpy as np
 import pytest
 
-from pipeline.data import FaceMesh, Floats, Patch
-from pipeline.export import read_mesh
-from pipeline.export.openfoam import write_openfoam
+from pipeline.export.formats.openfoam.case import write_openfoam
+from pipeline.export.read import read_mesh
 from pipeline.geometry.cells import cell_faces, polygons_of
+from pipeline.nouns.arrays import Floats
+from pipeline.nouns.mesh import FaceMesh, Patch
 from pipeline.quality.kinds import cells_by_kind, kinds_in_words
 from tests.openfoam import AIR, foam
 from tests.sample_meshes import cylinder, duct

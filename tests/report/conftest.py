@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from pipeline.report.render import rendering_environment
+from pipeline.report.views.render import rendering_environment
 
 _SPHERE = """
 import pyvista

@@ -6,18 +6,21 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from pipeline.analytics import compare
+from pipeline.analytics.models.comparison import compare
 from pipeline.case import Case
-from pipeline.data import FaceMesh, Solution
 from pipeline.enclosure.duct import enclose
 from pipeline.enclosure.settings import EnclosureSettings
-from pipeline.mat import LayeredSettings, Stop, generate, measure
-from pipeline.mat.settings import Constant
-from pipeline.quality import QualitySettings, judge
-from pipeline.report import ReportContent
+from pipeline.mat.generate import generate
+from pipeline.mat.measures import measure
+from pipeline.mat.settings import Constant, LayeredSettings, Stop
+from pipeline.mesh.improve.finish import TetmeshMeasures
+from pipeline.nouns.flow import Solution
+from pipeline.nouns.mesh import FaceMesh
+from pipeline.quality.judge import judge
+from pipeline.quality.settings import QualitySettings
+from pipeline.report.page.content import ReportContent
 from pipeline.surface.settings import SurfaceSettings
 from pipeline.surface.union import unite
-from pipeline.tetmesh.finish import TetmeshMeasures
 from tests.sample_meshes import duct
 
 MAT = LayeredSettings(
@@ -34,7 +37,7 @@ def small_mesh() -> FaceMesh:
 
 
 def manifest(stage: str) -> dict[str, Any]:
-    """What `pipeline.store` writes beside a stage."""
+    """What `pipeline.line.store` writes beside a stage."""
     return {
         "stage": stage, "key": "a" * 64, "code": "b" * 64, "libraries": {"numpy": "2.0"}, "seconds": 1.5,
         "peak_memory": 2**28, "counts": {"formats": ["openfoam", "vtk"]}, "files": {f"{stage}.npz": "c" * 64},

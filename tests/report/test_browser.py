@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 from pipeline.progress import silent
-from pipeline.report.page import filled
-from pipeline.report.render import Pictures
-from pipeline.report.sections import sections
+from pipeline.report.page.page import filled
+from pipeline.report.page.sections import sections
+from pipeline.report.views.render import Pictures
 from tests.report.contents import whole
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")

@@ -13,19 +13,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.data import FaceMesh, Metric, Patch
-from pipeline.export.openfoam import write_openfoam
+from pipeline.export.formats.openfoam.case import write_openfoam
 from pipeline.export.read import mesh_files, read_mesh
 from pipeline.export.settings import ExportSettings
-from pipeline.quality import QualitySettings, judge
-from pipeline.report.charts import metric_histogram
-from pipeline.report.content import MeshContent, SourceFile
-from pipeline.report.layers import layers_of_mesh
-from pipeline.report.mesh_page import filled_mesh_page, mesh_sections, subject_of_mesh, write_mesh_page
-from pipeline.report.painter import possible
-from pipeline.report.quality_section import unit_of
-from pipeline.report.render import Pictures
-from pipeline.report.scene_file import write_scene
+from pipeline.nouns.mesh import FaceMesh, Patch
+from pipeline.nouns.quality import Metric
+from pipeline.quality.judge import judge
+from pipeline.quality.settings import QualitySettings
+from pipeline.report.page.charts import metric_histogram
+from pipeline.report.page.content import MeshContent, SourceFile
+from pipeline.report.page.mesh_page import filled_mesh_page, mesh_sections, subject_of_mesh, write_mesh_page
+from pipeline.report.page.quality_section import unit_of
+from pipeline.report.views.layers import layers_of_mesh
+from pipeline.report.views.painter import possible
+from pipeline.report.views.render import Pictures
+from pipeline.report.views.scene_file import write_scene
 from tests.cli.conftest import Fibertwin
 from tests.cli.conftest import fibertwin as fibertwin  # the fixture
 from tests.cli.test_quality import good_mesh
@@ -97,9 +99,9 @@ def test_a_patch_that_a_boundary_file_calls_a_script_does_not_become_one(
     fibertwin: Fibertwin, mesh: FaceMesh, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # pictures take seconds, and have tests of their own
-    monkeypatch.setattr("pipeline.report.render.Painting.__init__", lambda *_: None)
-    monkeypatch.setattr("pipeline.report.render.Painting.__exit__", lambda *_: None)
-    monkeypatch.setattr("pipeline.report.render.Painting.finished", lambda _: Pictures())
+    monkeypatch.setattr("pipeline.report.views.render.Painting.__init__", lambda *_: None)
+    monkeypatch.setattr("pipeline.report.views.render.Painting.__exit__", lambda *_: None)
+    monkeypatch.setattr("pipeline.report.views.render.Painting.finished", lambda _: Pictures())
     case = tmp_path / "<img src=x onerror=alert(2)>"
     write_openfoam(mesh, case, AIR, settings=ExportSettings(encoding="ascii"))
     boundary = case / "constant/polyMesh/boundary"
@@ -114,9 +116,9 @@ def test_a_patch_that_a_boundary_file_calls_a_script_does_not_become_one(
 def test_provenance_holds_every_file_with_its_digest(
     fibertwin: Fibertwin, mesh: FaceMesh, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("pipeline.report.render.Painting.__init__", lambda *_: None)
-    monkeypatch.setattr("pipeline.report.render.Painting.__exit__", lambda *_: None)
-    monkeypatch.setattr("pipeline.report.render.Painting.finished", lambda _: Pictures())
+    monkeypatch.setattr("pipeline.report.views.render.Painting.__init__", lambda *_: None)
+    monkeypatch.setattr("pipeline.report.views.render.Painting.__exit__", lambda *_: None)
+    monkeypatch.setattr("pipeline.report.views.render.Painting.finished", lambda _: Pictures())
     write_openfoam(mesh, tmp_path / "case", AIR)
     (tmp_path / "case/it.foam").touch()
     assert fibertwin("quality", tmp_path / "case/it.foam", "--report", tmp_path / "new/page.html").code in (0, 1)

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pipeline.data import Mat
+from pipeline.nouns.fibers import Mat
 from pipeline.progress import silent
-from pipeline.quality import judge
-from pipeline.report import ReportContent
-from pipeline.report.page import filled
-from pipeline.report.render import Pictures
-from pipeline.report.sections import sections
+from pipeline.quality.judge import judge
+from pipeline.report.page.content import ReportContent
+from pipeline.report.page.page import filled
+from pipeline.report.page.sections import sections
+from pipeline.report.views.render import Pictures
 from tests.report.contents import CASE, SECTIONS, SOLUTION, whole
 from tests.report.pages import Page, read
 from tests.sample_meshes import cylinder

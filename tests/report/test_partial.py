@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.report.render import Pictures
-from pipeline.run import Run, content_of, report, run
+from pipeline.line.run import Run, content_of, report, run
+from pipeline.report.views.render import Pictures
 from tests.report.contents import CASE
 from tests.report.pages import read
 
@@ -16,9 +16,9 @@ from tests.report.pages import read
 @pytest.fixture(autouse=True)
 def _no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     # pictures take seconds, and have tests of their own
-    monkeypatch.setattr("pipeline.report.render.Painting.__init__", lambda *_: None)
-    monkeypatch.setattr("pipeline.report.render.Painting.__exit__", lambda *_: None)
-    monkeypatch.setattr("pipeline.report.render.Painting.finished", lambda _: Pictures())
+    monkeypatch.setattr("pipeline.report.views.render.Painting.__init__", lambda *_: None)
+    monkeypatch.setattr("pipeline.report.views.render.Painting.__exit__", lambda *_: None)
+    monkeypatch.setattr("pipeline.report.views.render.Painting.finished", lambda _: Pictures())
 
 
 def test_a_run_until_its_mat_has_a_report_of_its_mat(tmp_path: Path) -> None:

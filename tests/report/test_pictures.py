@@ -10,14 +10,16 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from pipeline.data import FIBERS, FaceMesh, Floats, Patch
 from pipeline.geometry.cells import cell_faces, polygons_of
-from pipeline.report import subject_of, write_report
-from pipeline.report.drawing import BACKGROUND
-from pipeline.report.mesh_scenes import MeshSubject
-from pipeline.report.painter import possible, trimmed
-from pipeline.report.render import Painting, rendering_environment
-from pipeline.report.scenes import SCENES, Subject, fibers_of_faces
+from pipeline.nouns.arrays import Floats
+from pipeline.nouns.mesh import FaceMesh, Patch
+from pipeline.nouns.patches import FIBERS
+from pipeline.report.page.page import subject_of, write_report
+from pipeline.report.views.drawing import BACKGROUND
+from pipeline.report.views.mesh_scenes import MeshSubject
+from pipeline.report.views.painter import possible, trimmed
+from pipeline.report.views.render import Painting, rendering_environment
+from pipeline.report.views.scenes import SCENES, Subject, fibers_of_faces
 from tests.report.contents import whole
 from tests.report.pages import read
 

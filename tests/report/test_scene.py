@@ -11,14 +11,16 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from pipeline.data import FIBERS, FaceMesh, Mat, Patch
 from pipeline.geometry.triangles import enclosed_volume
-from pipeline.quality import QualitySettings, judge
-from pipeline.report import ReportContent
-from pipeline.report.content import MeshContent
-from pipeline.report.drawing import PALETTE
-from pipeline.report.layers import Layer, layers_of_mesh, layers_of_run, limited
-from pipeline.report.scene_file import scene_of, write_scene
+from pipeline.nouns.fibers import Mat
+from pipeline.nouns.mesh import FaceMesh, Patch
+from pipeline.nouns.patches import FIBERS
+from pipeline.quality.judge import judge
+from pipeline.quality.settings import QualitySettings
+from pipeline.report.page.content import MeshContent, ReportContent
+from pipeline.report.views.drawing import PALETTE
+from pipeline.report.views.layers import Layer, layers_of_mesh, layers_of_run, limited
+from pipeline.report.views.scene_file import scene_of, write_scene
 from tests.report.contents import CASE, whole
 from tests.report.devtools import CHROMIUM, Browser
 from tests.report.pages import read

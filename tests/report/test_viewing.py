@@ -9,7 +9,7 @@ from PIL import Image
 
 from pipeline.cli.viewing import view_run, write_scene_of_run
 from pipeline.errors import CaseError, StageError
-from pipeline.run import run
+from pipeline.line.run import run
 from tests.report.contents import CASE
 
 

@@ -6,8 +6,8 @@ import dataclasses
 
 import pytest
 
-from pipeline.data import QualityReport
-from pipeline.report.words import BAD, GOOD, NOTE, checks, steps, verdict
+from pipeline.nouns.quality import QualityReport
+from pipeline.report.page.words import BAD, GOOD, NOTE, checks, steps, verdict
 from tests.report.contents import SOLUTION, whole
 
 

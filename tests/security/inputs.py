@@ -23,14 +23,14 @@ from pipeline.case import override, read_case, read_toml, validate
 from pipeline.cli.bundled import bundled
 from pipeline.cli.starting import first_case
 from pipeline.errors import FibertwinError
-from pipeline.export import export
-from pipeline.export.openfoam import write_openfoam
+from pipeline.export.formats.openfoam.case import write_openfoam
 from pipeline.export.read import read_mesh
 from pipeline.export.settings import ExportSettings, Format
+from pipeline.export.write import export
+from pipeline.line.run import Run
 from pipeline.mat.exchange import read_fibers
-from pipeline.quality import judge
-from pipeline.run import Run
-from pipeline.study import read_study
+from pipeline.quality.judge import judge
+from pipeline.study.settings import read_study
 from pipeline.units import parse
 from tests.openfoam import AIR
 from tests.sample_meshes import duct

@@ -13,7 +13,7 @@ import pytest
 from pipeline.case import LARGEST_FILE, override, read_case
 from pipeline.cli.printable import printable
 from pipeline.errors import CaseError, StageError
-from pipeline.export.openfoam import write_openfoam
+from pipeline.export.formats.openfoam.case import write_openfoam
 from pipeline.export.read import read_mesh
 from pipeline.export.settings import ExportSettings
 from pipeline.mat import exchange

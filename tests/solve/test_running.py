@@ -8,10 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from pipeline.data import Flow
 from pipeline.errors import StageError
-from pipeline.export.openfoam import write_openfoam
-from pipeline.solve import Bed, SolveSettings, openfoam_missing, solve
+from pipeline.export.formats.openfoam.case import write_openfoam
+from pipeline.nouns.flow import Flow
+from pipeline.openfoam.environment import openfoam_missing
+from pipeline.solve.running import Bed, solve
+from pipeline.solve.settings import SolveSettings
 from tests.openfoam import AIR
 from tests.sample_meshes import duct
 
@@ -90,8 +92,8 @@ def test_a_run_killed_at_once_leaves_no_solver_behind_and_goes_on(tmp_path: Path
 
     bar_case(tmp_path / "case", cells=10)
     program = (
-        "from pathlib import Path; from pipeline.solve import *; from tests.openfoam import AIR\n"
-        "from tests.solve.test_running import BED\n"
+        "from pathlib import Path; from pipeline.solve.running import solve; from tests.openfoam import AIR\n"
+        "from pipeline.solve.settings import SolveSettings; from tests.solve.test_running import BED\n"
         f"solve(Path({str(tmp_path / 'case')!r}), Path({str(tmp_path / 'work')!r}), AIR, BED,"
         " SolveSettings(tolerance=1e-9))"
     )

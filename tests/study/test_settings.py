@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 
 from pipeline.errors import CaseError
-from pipeline.study import Study, read_study
 from pipeline.study.plan import plan
+from pipeline.study.settings import Study, read_study
 
 CASE = """
 [mat]

@@ -14,16 +14,16 @@ import numpy as np
 import pytest
 
 import pipeline.study.study as study_module
-from pipeline.data import Mat
 from pipeline.errors import CaseError, FibertwinError, StageError
-from pipeline.mat import measure
-from pipeline.run import Run
-from pipeline.store import read_json
-from pipeline.study import Study, StudyResult, carry_out_study
+from pipeline.line.run import Run
+from pipeline.line.store import read_json
+from pipeline.mat.measures import measure
+from pipeline.nouns.fibers import Mat
 from pipeline.study.one import carry_out
 from pipeline.study.plan import Task, plan
 from pipeline.study.quantity import Results
-from pipeline.study.settings import Reference
+from pipeline.study.settings import Reference, Study
+from pipeline.study.study import StudyResult, carry_out_study
 from pipeline.study.tables import write_tables
 from pipeline.study.workers import SLURM, carried_out
 
@@ -71,7 +71,7 @@ def _here(monkeypatch: pytest.MonkeyPatch) -> list[Task]:
 
 def test_a_study_tells_what_single_runs_tell(study: Study, here: list[Task], tmp_path: Path) -> None:
     from pipeline.case import read_case
-    from pipeline.mat import generate
+    from pipeline.mat.generate import generate
 
     result = carry_out_study(study, tmp_path / "out")
     run = result.points[1].runs[2]
@@ -169,7 +169,7 @@ def test_a_wrong_measure_keeps_the_runs_that_were_made(study: Study, here: list[
 
 
 def test_two_studies_do_not_share_a_folder_at_once(study: Study, tmp_path: Path) -> None:
-    from pipeline.store import locked
+    from pipeline.line.store import locked
 
     with locked(tmp_path / "out"), pytest.raises(StageError, match="another run"):
         carry_out_study(study, tmp_path / "out")

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pipeline.data import Mat
 from pipeline.geometry.box import Box
+from pipeline.nouns.fibers import Mat
 
 RADIUS = 0.7e-6
 SIDE = 10e-6

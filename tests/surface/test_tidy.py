@@ -5,8 +5,8 @@
 import numpy as np
 import pytest
 
-from pipeline.data import Surface
 from pipeline.geometry.crossings import self_intersections
+from pipeline.nouns.surface import Surface
 from pipeline.surface.measures import measure_surface
 from pipeline.surface.remesh import check_with_meshlab
 from pipeline.surface.settings import SurfaceSettings

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from pipeline.data import Mat
 from pipeline.geometry.triangles import area_vectors, connected_pieces
+from pipeline.nouns.fibers import Mat
 from pipeline.surface.settings import SurfaceSettings
 from pipeline.surface.union import spread, unite
 

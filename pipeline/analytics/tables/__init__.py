@@ -1,0 +1,3 @@
+"""What the models say, as rows and as figures."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later

@@ -1,0 +1,3 @@
+"""One file a format."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later

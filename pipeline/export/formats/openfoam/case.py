@@ -1,0 +1,137 @@
+"""A complete simpleFoam case: the mesh, the fields at the start, the solver's dictionaries, and scripts."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+from pathlib import Path
+
+from pipeline.errors import StageError
+from pipeline.export.formats.openfoam import dictionaries as foam
+from pipeline.export.formats.openfoam.cyclic import with_matching_sides
+from pipeline.export.formats.openfoam.poly_mesh import write_poly_mesh
+from pipeline.export.formats.openfoam.slip import FiberSlip
+from pipeline.export.settings import ExportSettings
+from pipeline.nouns.flow import Flow
+from pipeline.nouns.mesh import FaceMesh, Patch
+from pipeline.nouns.patches import FIBERS, INLET, OUTLET, SIDES
+from pipeline.openfoam.decompose import format_decompose
+from pipeline.progress import Progress, silent
+
+
+def write_openfoam(
+    mesh: FaceMesh,
+    folder: Path,
+    flow: Flow,
+    sides: str = "symmetry",
+    settings: ExportSettings | None = None,
+    progress: Progress = silent,
+    slip: FiberSlip | None = None,
+) -> None:
+    """Write a case that `checkMesh`, `simpleFoam` and `./Allrun` take as it is.
+
+    Parameters
+    ----------
+    mesh : FaceMesh
+        With the patches `inlet` and `outlet`, any of the four sides, and `fibers`.
+    folder : Path
+        Made if it is not there.
+    flow : Flow
+    sides : "symmetry", "slip" or "cyclic"
+        What the sides are to the solver.
+    settings : ExportSettings
+    progress : Progress
+    slip : FiberSlip, optional
+        How far the air slips along the fibers; needed just where ``settings.fiber_wall`` is ``"slip"``.
+
+    Raises
+    ------
+    StageError
+        If a patch is missing, empty or unknown, or the sides are cyclic but do not fit each other.
+    """
+    settings = settings or ExportSettings()
+    if (slip is not None) is not (settings.fiber_wall == "slip"):
+        raise ValueError("a slip is given just where fiber_wall is slip")
+    _refuse_odd_patches(mesh)
+    if sides == "cyclic":
+        mesh = with_matching_sides(mesh)
+    progress("export: OpenFOAM")
+    for part in ("0", "constant/polyMesh", "system"):
+        (folder / part).mkdir(parents=True, exist_ok=True)
+    types = {patch.name: _patch_type(mesh, patch, sides) for patch in mesh.patches}
+    write_poly_mesh(mesh, folder / "constant/polyMesh", types, settings.encoding)
+    _write(folder / "0/U", _velocity(types, flow, slip.condition(mesh) if slip else "type noSlip;"))
+    _write(folder / "0/p", _pressure(types))
+    for name, text in foam.format_constant(flow, settings.dialect).items():
+        _write(folder / "constant" / name, text)
+    _write(folder / "system/controlDict", foam.format_control_dict(flow, settings.dialect))
+    _write(folder / "system/fvSchemes", foam.format_fv_schemes(cyclic=sides == "cyclic"))
+    _write(folder / "system/fvSolution", foam.format_fv_solution())
+    _write(folder / "system/decomposeParDict", format_decompose(2))
+    _write(folder / "case.foam", "")
+    for name, script in (("Allrun", foam.format_allrun(settings.dialect)), ("Allclean", foam.ALLCLEAN)):
+        _write(folder / name, script)
+        (folder / name).chmod(0o755)
+
+
+def _write(path: Path, text: str) -> None:
+    path.write_text(text, encoding="ascii")
+
+
+def _refuse_odd_patches(mesh: FaceMesh) -> None:
+    counts = {patch.name: patch.count for patch in mesh.patches}
+    missing = [name for name in (INLET, OUTLET) if not counts.get(name)]
+    if missing:
+        raise StageError(
+            f"the mesh has no face in patch {' and '.join(missing)}: no air gets through; "
+            "lengthen enclosure.inlet and enclosure.outlet"
+        )
+    unknown = sorted(set(counts) - {INLET, OUTLET, FIBERS, *SIDES})
+    if unknown:
+        raise StageError(f"no boundary condition is known for patch {', '.join(unknown)}")
+
+
+def _patch_type(mesh: FaceMesh, patch: Patch, sides: str) -> str:
+    if patch.name == FIBERS:
+        return "type wall;"
+    if patch.name in SIDES and sides == "symmetry":
+        return "type symmetryPlane;" if _is_exact_plane(mesh, patch) else "type symmetry;"
+    if patch.name in SIDES and sides == "cyclic":
+        # entries about the transformation differ between OpenFOAM's dialects, and none is needed
+        return f"type cyclic; neighbourPatch {SIDES[SIDES.index(patch.name) ^ 1]};"
+    return "type patch;"
+
+
+def _is_exact_plane(mesh: FaceMesh, patch: Patch) -> bool:
+    """Whether one coordinate is the same to the last bit: OpenFOAM stops at a tilt of 3e-8."""
+    corners = mesh.corners[mesh.offsets[patch.start] : mesh.offsets[patch.start + patch.count]]
+    axis = SIDES.index(patch.name) // 2
+    return len(set(mesh.points[corners, axis].tolist())) == 1
+
+
+def _velocity(types: dict[str, str], flow: Flow, on_fibers: str) -> str:
+    through = f"(0 0 {flow.face_velocity!r})"
+    conditions = {
+        name: {
+            INLET: f"type fixedValue; value uniform {through};",
+            OUTLET: "type zeroGradient;",
+            FIBERS: on_fibers,
+        }.get(name, _side_condition(kind, "type slip;"))
+        for name, kind in types.items()
+    }
+    return foam.format_field("U", "volVectorField", "[0 1 -1 0 0 0 0]", through, conditions)
+
+
+def _pressure(types: dict[str, str]) -> str:
+    conditions = {
+        name: {
+            INLET: "type zeroGradient;",
+            OUTLET: "type fixedValue; value uniform 0;",
+            FIBERS: "type zeroGradient;",
+        }.get(name, _side_condition(kind, "type zeroGradient;"))
+        for name, kind in types.items()
+    }
+    return foam.format_field("p", "volScalarField", "[0 2 -2 0 0 0 0]", "0", conditions)
+
+
+def _side_condition(kind: str, otherwise: str) -> str:
+    # a side of a constraint type takes the condition of the same name
+    return otherwise if kind == "type patch;" else kind.split(";")[0] + ";"

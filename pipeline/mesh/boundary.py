@@ -1,0 +1,93 @@
+"""Find the patch of each boundary face, and make the duct's planes exactly flat again.
+
+fTetWild knows no patches and leaves every vertex anywhere within its envelope, while OpenFOAM refuses a
+symmetry plane whose faces tilt by more than 3e-8 rad.
+"""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pipeline.geometry.box import Box
+from pipeline.geometry.triangles import area_vectors
+from pipeline.nouns.arrays import Floats, Ints
+from pipeline.nouns.patches import FIBERS, INLET, OUTLET, PATCHES, SIDES
+
+
+@dataclass(frozen=True, slots=True)
+class Plane:
+    """One face of the duct: coordinate `axis` equals `value`, the outside lies on the side `sign`."""
+
+    patch: int
+    axis: int
+    value: float
+    sign: int
+
+
+def planes(box: Box) -> tuple[Plane, ...]:
+    """Give the six faces of the duct with the index of their patch."""
+    named = {
+        INLET: (2, box.lower[2], -1),
+        OUTLET: (2, box.upper[2], 1),
+        SIDES[0]: (0, box.lower[0], -1),
+        SIDES[1]: (0, box.upper[0], 1),
+        SIDES[2]: (1, box.lower[1], -1),
+        SIDES[3]: (1, box.upper[1], 1),
+    }
+    return tuple(Plane(PATCHES.index(name), *where) for name, where in named.items())
+
+
+# A boundary face belongs to a plane when it faces the plane's way: cos 35 degrees tells a plane's own triangles,
+# tilted by the envelope at most, from a fiber's wall that happens to lie within the envelope.
+_FACING = 0.82
+
+
+def assign(points: Floats, faces: Ints, box: Box, tolerance: float) -> Ints:
+    """Find the patch of each boundary face by where it lies and which way it faces.
+
+    Parameters
+    ----------
+    points : (n, 3) array [m]
+    faces : (b, 3) int array
+        Boundary triangles, outward.
+    box : Box [m]
+        The duct.
+    tolerance : float [m]
+        How far a vertex may lie from its plane.
+
+    Returns
+    -------
+    (b,) int array
+        Index into `pipeline.nouns.patches.PATCHES`.
+    """
+    patch = np.full(len(faces), PATCHES.index(FIBERS), dtype=np.int64)
+    vectors = area_vectors(points, faces)
+    areas = np.linalg.norm(vectors, axis=1)
+    for plane in planes(box):
+        near = (np.abs(points[:, plane.axis] - plane.value) <= tolerance)[faces].all(axis=1)
+        facing = plane.sign * vectors[:, plane.axis] >= _FACING * areas
+        patch[near & facing] = plane.patch
+    return patch
+
+
+def flattened(points: Floats, faces: Ints, patch: Ints, box: Box) -> Floats:
+    """Give the points with every vertex of a plane's face exactly on that plane, and none outside the duct.
+
+    Parameters
+    ----------
+    points : (n, 3) array [m]
+    faces : (b, 3) int array
+    patch : (b,) int array
+        As `assign` gives it.
+    box : Box [m]
+
+    Returns
+    -------
+    (n, 3) array [m]
+    """
+    flat = np.clip(points, box.lower, box.upper)
+    for plane in planes(box):
+        flat[np.unique(faces[patch == plane.patch]), plane.axis] = plane.value
+    return flat

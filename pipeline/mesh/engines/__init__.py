@@ -1,0 +1,3 @@
+"""What fills the air with cells: one folder an engine."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later

@@ -1,0 +1,3 @@
+"""Tetrahedra by fTetWild."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later

@@ -1,0 +1,144 @@
+"""Run the mesher as a child process within limits of time and memory, and tell how far it is."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+import json
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import psutil
+
+from pipeline.errors import StageError
+from pipeline.mesh.engines.ftetwild import worker
+from pipeline.nouns.arrays import Floats, Ints
+from pipeline.progress import Progress
+
+# What fTetWild's log says at the start of each pass, and at the end of each round that refines by the size field.
+_ROUND = re.compile(rb"/ pass (\d+) /|^/{9}(\d+) ", re.MULTILINE)
+_POLL = 0.2  # seconds between two looks at the child
+_TAIL = 5  # lines of the child's log that an error quotes
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What the child may use: seconds, and bytes of memory."""
+
+    seconds: float
+    memory: float
+
+
+@dataclass(frozen=True, slots=True)
+class Meshed:
+    """What the child gave: points (n, 3), tets (m, 4), and what it used."""
+
+    points: Floats
+    tets: Ints
+    seconds: float
+    peak_memory: int
+
+
+def run_child(
+    points: Floats, triangles: Ints, options: dict[str, Any], background: dict[str, Any], limits: Limits, tell: Progress
+) -> Meshed:
+    """Call ``pytetwild.tetrahedralize`` in a child process.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Of a closed surface of order one in size.
+    triangles : (m, 3) int array
+    options : dict
+        Plain arguments of the call; `num_opt_iter` scales the progress.
+    background : dict
+        Its `bg_...` arrays, or empty.
+    limits : Limits
+    tell : Progress
+
+    Raises
+    ------
+    StageError
+        If the child crashes, exceeds a limit, or gives no tetrahedron.
+    """
+    with tempfile.TemporaryDirectory(prefix="fibertwin-mesh-") as name:
+        folder = Path(name)
+        np.savez(
+            folder / worker.INPUT,
+            points=points,
+            triangles=triangles.astype(np.int32),
+            options=np.array(json.dumps(options)),
+            **background,
+        )
+        began = time.monotonic()
+        with (folder / "log").open("wb") as log:
+            # -P: the working folder must not become a place to import from
+            command = [sys.executable, "-P", "-m", worker.__name__, str(folder)]
+            child = subprocess.Popen(command, cwd=folder, stdout=log, stderr=subprocess.STDOUT)
+        try:
+            peak = _watch(child, folder / "log", int(options["num_opt_iter"]), limits, tell)
+        finally:
+            if child.poll() is None:
+                child.kill()
+            child.wait()
+        seconds = time.monotonic() - began
+        if child.returncode != 0 or not (folder / worker.OUTPUT).exists():
+            raise StageError(_crash(child.returncode, folder / "log", seconds))
+        with np.load(folder / worker.OUTPUT, allow_pickle=False) as result:
+            mesh_points, tets = result["points"].astype(np.float64), result["tets"].astype(np.int64)
+    if len(tets) == 0:
+        raise StageError(f"fTetWild gave no tetrahedron from {len(triangles)} triangles; lower tetmesh.envelope")
+    return Meshed(mesh_points, tets, seconds, peak)
+
+
+def _watch(child: "subprocess.Popen[bytes]", log: Path, passes: int, limits: Limits, tell: Progress) -> int:
+    process = psutil.Process(child.pid)
+    began, peak, read = time.monotonic(), 0, 0
+    state, share = "inserting the surface", 0.0
+    while child.poll() is None:
+        time.sleep(_POLL)
+        try:
+            peak = max(peak, process.memory_info().rss)
+        except psutil.Error:
+            continue
+        seconds = time.monotonic() - began
+        if seconds > limits.seconds:
+            raise StageError(
+                f"fTetWild was ended after {seconds:.0f} s, the limit, while {state}; raise tetmesh.time_limit, "
+                "or make the mesh coarser: raise tetmesh.edge or lower tetmesh.passes"
+            )
+        if peak > limits.memory:
+            raise StageError(
+                f"fTetWild was ended at {peak / 2**30:.1f} GiB of memory, over the limit of "
+                f"{limits.memory / 2**30:.1f} GiB; "
+                "raise tetmesh.memory_limit, or make the mesh coarser: raise tetmesh.edge"
+            )
+        with log.open("rb") as file:
+            file.seek(read)
+            news = file.read()
+            read += len(news)
+        found = _ROUND.findall(news)
+        if found:
+            before, after = found[-1]
+            state = f"in pass {int(before) + 1} of {passes}" if before else f"refining, round {int(after) + 2}"
+            # the passes take about a third of the time, the insertion before them and the refining after them the rest
+            share = 0.2 + (0.3 * int(before) / passes if before else 0.3 + min(0.4, 0.2 * int(after)))
+        if news:
+            tell(f"fTetWild, {state}", share)
+    return peak
+
+
+def _crash(code: int, log: Path, seconds: float) -> str:
+    lines = log.read_text(errors="replace").strip().splitlines()
+    last = " | ".join(line.strip() for line in lines[-_TAIL:]) or "nothing"
+    how = f"was killed by signal {-code}" if code < 0 else f"ended with exit code {code}"
+    advice = "the system ends processes when memory runs out; " if code == -9 else ""
+    return (
+        f"fTetWild {how} after {seconds:.0f} s; {advice}change tetmesh.envelope or tetmesh.edge a little "
+        f"(a tenth is enough), or another mat.seed; its last lines: {last}"
+    )

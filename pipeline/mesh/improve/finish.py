@@ -1,0 +1,140 @@
+"""Make a mesh fit for a solver: mend its worst cells, fill its crevices, give the fibers their volume, check."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pipeline.errors import StageError
+from pipeline.geometry.tets import boundary, volumes
+from pipeline.mesh.boundary import assign
+from pipeline.mesh.engines.raw import RawMesh
+from pipeline.mesh.improve.fit import fitted
+from pipeline.mesh.improve.settle import free_axes, settled
+from pipeline.mesh.settings import TetmeshSettings
+from pipeline.mesh.wall_error import Fidelity
+from pipeline.nouns.arrays import Floats, Ints
+from pipeline.nouns.domain import FluidDomain
+from pipeline.nouns.mesh import TetMesh
+from pipeline.nouns.patches import FIBERS
+from pipeline.progress import Progress
+
+_FITS = 2  # the second makes good what mending after the first moved
+_SLIDE = 0.2  # edges that it may move a vertex along its fiber
+_WALL_LEASH = 0.5  # envelopes that mending may move a vertex of a fiber
+
+
+@dataclass(frozen=True, slots=True)
+class TetmeshMeasures:
+    """What the mesher made of the fibers.
+
+    Parameters
+    ----------
+    points, cells : int
+    fluid_volume : float [m3]
+    volume_error : float [-]
+        Solid volume in the duct, mesh against surface, relative.
+    raw_volume_error : float [-]
+        The same as the engine left it, before the fibers' points were moved.
+    filled_volume : float [-]
+        Share of the air, in the tips of crevices, that was given to the fibers.
+    faulty_cells : int
+        Cells still beyond what mending aims at, a little inside the usual limits.
+    mesher_seconds : float [s]
+    mesher_peak_memory : int [byte]
+    fidelity : Fidelity, optional
+        How far the walls stand off the true fibers; every finished stage has it.
+    """
+
+    points: int
+    cells: int
+    fluid_volume: float
+    volume_error: float
+    raw_volume_error: float
+    filled_volume: float
+    faulty_cells: int
+    mesher_seconds: float
+    mesher_peak_memory: int
+    fidelity: Fidelity | None = None
+
+
+def finished(
+    raw: RawMesh, domain: FluidDomain, settings: TetmeshSettings, unit: float, tell: Progress
+) -> tuple[TetMesh, TetmeshMeasures]:
+    """Mend what an engine left, restore the fibers' volume, and check both.
+
+    Parameters
+    ----------
+    raw : RawMesh
+    domain : FluidDomain
+    settings : TetmeshSettings
+    unit : float [m]
+        Mean fiber diameter.
+    tell : Progress
+
+    Returns
+    -------
+    TetMesh, TetmeshMeasures
+
+    Raises
+    ------
+    StageError
+        If cells without volume remain, or the fibers' volume is further off than the settings allow.
+    """
+    points, tets = used_points(raw.points, raw.tets)
+    raw_error = _volume_error(points, tets, domain)
+    tell("mending the worst cells", 0.6)
+    limits = np.array(domain.box.lower), np.array(domain.box.upper)
+    leash, slide = _WALL_LEASH * settings.envelope * unit, _SLIDE * settings.edge * unit
+    filled = 0.0
+    for _ in range(_FITS):
+        points, tets, faulty, tips = settled(points, tets, domain, leash, slide)
+        filled += tips
+        points, tets = used_points(points, tets)
+        faces, _ = boundary(tets)
+        walls = faces[assign(points, faces, domain.box, tolerance=0.0) == domain.patches.index(FIBERS)]
+        points = fitted(points, tets, walls, free_axes(points, domain.box), domain.volume, limits)
+    _check_volumes(points, tets)
+
+    faces, _ = boundary(tets)
+    mesh = TetMesh(points, tets, faces, assign(points, faces, domain.box, tolerance=0.0), domain.patches, domain.slab)
+    measures = TetmeshMeasures(
+        points=len(points),
+        cells=len(tets),
+        fluid_volume=mesh.volume,
+        volume_error=_volume_error(points, tets, domain),
+        raw_volume_error=raw_error,
+        filled_volume=filled / domain.volume,
+        faulty_cells=faulty,
+        mesher_seconds=raw.seconds,
+        mesher_peak_memory=raw.peak_memory,
+    )
+    if abs(measures.volume_error) > settings.volume_error:
+        raise StageError(
+            f"the mesh keeps the fibers' volume to {measures.volume_error:+.2%}, allowed is "
+            f"{settings.volume_error:.2%}; lower tetmesh.envelope (now {settings.envelope:g} diameters) "
+            "or raise tetmesh.volume_error"
+        )
+    return mesh, measures
+
+
+def used_points(points: Floats, tets: Ints) -> tuple[Floats, Ints]:
+    """Drop the points that no tetrahedron uses: points (k, 3), and the tets (m, 4) by their new numbers."""
+    used, renumbered = np.unique(tets, return_inverse=True)
+    return points[used], renumbered.reshape(-1, 4)
+
+
+def _volume_error(points: Floats, tets: Ints, domain: FluidDomain) -> float:
+    solid = domain.box.volume - domain.volume
+    return float((domain.volume - volumes(points, tets).sum()) / solid)
+
+
+def _check_volumes(points: Floats, tets: Ints) -> None:
+    flat = np.flatnonzero(volumes(points, tets) <= 0.0)
+    if len(flat):
+        place = points[tets[flat[0]]].mean(axis=0) * 1e6
+        raise StageError(
+            f"{len(flat)} of {len(tets)} tetrahedra have no volume, first at ({place[0]:.3g}, {place[1]:.3g}, "
+            f"{place[2]:.3g}) um; lower tetmesh.edge or tetmesh.envelope"
+        )

@@ -1,0 +1,77 @@
+"""The air that flows, and what a solver found."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+from dataclasses import dataclass
+
+from pipeline.nouns.arrays import require
+
+
+@dataclass(frozen=True, slots=True)
+class Flow:
+    """Air on its way into the duct.
+
+    Parameters
+    ----------
+    face_velocity : float [m/s]
+        Flow rate over the face's area.
+    temperature : float [K]
+    viscosity : float [Pa s]
+        Dynamic.
+    density : float [kg/m3]
+    mean_free_path : float [m]
+    """
+
+    face_velocity: float
+    temperature: float
+    viscosity: float
+    density: float
+    mean_free_path: float
+
+    def __post_init__(self) -> None:
+        for name in ("face_velocity", "temperature", "viscosity", "density", "mean_free_path"):
+            require(getattr(self, name) > 0, f"{name} is not above 0")
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """What a solver found for the flow through a duct.
+
+    Parameters
+    ----------
+    pressure_drop : float [Pa]
+        Mean over the inlet less mean over the outlet.
+    flow_rate : float [m3/s]
+        Into the inlet.
+    drag : float [N]
+        Of the air on the fibers, along the flow.
+    permeability : float [m2]
+        Darcy's, over the mat's thickness: viscosity x velocity x thickness / pressure drop.
+    force_balance_error : float [-]
+        Drag over (pressure drop x face area), less 1; the walls and the change of momentum take no part.
+    mass_balance_error : float [-]
+        Flow out over flow in, less 1.
+    iterations : int
+    converged : bool
+        Whether the pressure drop had settled when the run ended.
+    seconds : float [s]
+        Wall time of all runs that led here.
+    cores : int
+    effective_fiber_diameter : float [m], optional
+        Diameter for which the model the user chose gives this pressure drop at the mesh's solidity.
+    f_star : float [-], optional
+        For an array of parallel cylinders: drag per length of fiber over viscosity x face velocity.
+    """
+
+    pressure_drop: float
+    flow_rate: float
+    drag: float
+    permeability: float
+    force_balance_error: float
+    mass_balance_error: float
+    iterations: int
+    converged: bool
+    seconds: float
+    cores: int
+    effective_fiber_diameter: float | None = None
+    f_star: float | None = None

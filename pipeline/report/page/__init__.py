@@ -1,0 +1,3 @@
+"""The page of a run."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later

@@ -1,0 +1,3 @@
+"""The pictures and the scene of a run."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later

@@ -1,0 +1,181 @@
+"""What an interactive scene holds: surfaces to show and hide, outlines, and no more triangles than a page bears."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pipeline.analytics.tables.rows import length
+from pipeline.geometry.box import Box
+from pipeline.geometry.sections import fan, section
+from pipeline.nouns.arrays import Floats, Ints
+from pipeline.nouns.domain import FluidDomain
+from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.patches import FIBERS, INLET, OUTLET
+from pipeline.report.page.content import MeshContent, ReportContent
+from pipeline.report.views import drawing
+from pipeline.report.views.drawing import near_the_middle
+from pipeline.report.views.mesh_scenes import axis_of_sections
+from pipeline.report.views.scenes import fibers_of_faces, tubes_of
+
+LARGEST = 300_000
+"""Triangles that a scene holds at most: 8 MB of text."""
+_SEE_THROUGH, _SOLID = 0.3, 1.0
+_MIDDLE = "cells at the middle plane {}"
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Layer:
+    """Triangles that are shown and hidden together.
+
+    Parameters
+    ----------
+    name : str
+    points : (n, 3) array [m]
+    triangles : (t, 3) int array
+    edges : (t,) int array
+        Which sides of a triangle are to be drawn as lines: bit k stands for that from corner k to the next.
+    number : (t,) int array
+        Of the fiber or patch that each belongs to.
+    color : str, optional
+        As ``#rrggbb``; without it a number has a color of its own.
+    opacity : float
+    shown : bool
+        Whether it is seen at first.
+    label : str
+        What a triangle's number counts, as in "fiber 7"; where it is empty a click tells the layer's name.
+    """
+
+    name: str
+    points: Floats
+    triangles: Ints
+    edges: Ints
+    number: Ints
+    color: str | None = None
+    opacity: float = _SOLID
+    shown: bool = True
+    label: str = ""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Model:
+    """All that a scene shows: layers, outlines by name, and what was left out of them, in words."""
+
+    layers: tuple[Layer, ...]
+    outlines: dict[str, Box]
+    note: str
+
+
+def layers_of_run(content: ReportContent) -> Model:
+    """Give what a run has: its fibers, the patches of its duct, and a section of its cells.
+
+    The content must have a mat at least.
+    """
+    assert content.mat is not None
+    layers = [_fibers(content)]
+    if content.mesh is not None:
+        layers += _patches(content.mesh, {FIBERS})
+        layers.append(_section(content.mesh, 0, content.mat.slab))
+    elif content.domain is not None:
+        layers += _sides(content.domain)
+    outlines = {"slab of the mat": content.mat.slab}
+    if content.domain is not None:
+        outlines["duct"] = content.domain.box
+    return limited(layers, outlines)
+
+
+def layers_of_mesh(content: MeshContent) -> Model:
+    """Give what a mesh alone has: its patches, and a section of its cells."""
+    mesh = content.mesh
+    layers = [replace(layer, opacity=_SOLID, shown=True) for layer in _patches(mesh, set())]
+    layers.append(_section(mesh, axis_of_sections(mesh), drawing.extent(mesh)))
+    return limited(layers, {"extent": drawing.extent(mesh)})
+
+
+def limited(layers: list[Layer], outlines: dict[str, Box], largest: int = LARGEST) -> Model:
+    """Thin out layers until all of them together have no more triangles than a page bears.
+
+    Points that lie within one cell of a grid become one, and what has no area left goes. The grid is the finest of
+    those that double each other which is coarse enough.
+    """
+    layers = [layer for layer in layers if len(layer.triangles)]
+    whole = sum(len(layer.triangles) for layer in layers)
+    size = max(float(np.ptp(layer.points, axis=0).max()) for layer in layers)
+    cell, thin = size / 4096, layers
+    while sum(len(layer.triangles) for layer in thin) > largest:
+        thin = [_merged(layer, cell) for layer in layers]
+        cell *= 2.0
+    kept = sum(len(layer.triangles) for layer in thin)
+    note = f"{kept:,} triangles"
+    if kept < whole:
+        note += f" of {whole:,}: points closer than {length(0.5 * cell)} were merged"
+    return Model(tuple(layer for layer in thin if len(layer.triangles)), outlines, note)
+
+
+def _merged(layer: Layer, cell: float) -> Layer:
+    place = np.floor((layer.points - layer.points.min(axis=0)) / cell).astype(np.int64)
+    _, first, which = np.unique(place, axis=0, return_index=True, return_inverse=True)
+    triangles = which.ravel()[layer.triangles]
+    a, b, c = triangles.T
+    kept = (a != b) & (b != c) & (c != a)
+    return replace(
+        layer,
+        points=layer.points[first],
+        triangles=triangles[kept],
+        edges=layer.edges[kept],
+        number=layer.number[kept],
+    )
+
+
+def _fibers(content: ReportContent) -> Layer:
+    name, label = "fibers", "fiber"
+    if content.mesh is not None and content.domain is not None:
+        mesh = content.mesh
+        which = mesh.patch(FIBERS)
+        faces = fibers_of_faces(mesh, content.domain)
+        points, triangles, edges, face = fan(mesh.points, mesh.corners, mesh.offsets[which.start : which.stop + 1])
+        return Layer(name, points, triangles, edges, faces[face], label=label)
+    surface = content.surface
+    if surface is not None:
+        return Layer(name, surface.points, surface.triangles, _all_edges(surface.triangles), surface.fiber, label=label)
+    assert content.mat is not None
+    points, triangles, fiber = tubes_of(content.mat)
+    return Layer(name, points, triangles, _all_edges(triangles), fiber, label=label)
+
+
+def _all_edges(triangles: Ints) -> Ints:
+    return np.full(len(triangles), 0b111)
+
+
+def _patches(mesh: FaceMesh, without: set[str]) -> Iterator[Layer]:
+    for number, patch in enumerate(mesh.patches):
+        if patch.name in without or not patch.count:
+            continue
+        which = mesh.patch(patch.name)
+        offsets = mesh.offsets[which.start : which.stop + 1]
+        points, triangles, edges, _ = fan(mesh.points, mesh.corners, offsets)
+        yield _side(patch.name, number, points, triangles, edges)
+
+
+def _sides(domain: FluidDomain) -> Iterator[Layer]:
+    for number, name in enumerate(domain.patches):
+        triangles = domain.triangles[domain.patch == number]
+        if name != FIBERS and len(triangles):
+            yield _side(name, number, domain.points, triangles, _all_edges(triangles))
+
+
+def _side(name: str, number: int, points: Floats, triangles: Ints, edges: Ints) -> Layer:
+    ours = {INLET: drawing.INLET, OUTLET: drawing.OUTLET}
+    color = ours.get(name) or "#" + bytes(drawing.colors_by_number(np.array([number]))[0].tolist()).hex()
+    numbers = np.full(len(triangles), number)
+    return Layer(name, points, triangles, edges, numbers, color, _SEE_THROUGH, shown=name in ours)
+
+
+def _section(mesh: FaceMesh, axis: int, around: Box) -> Layer:
+    place = near_the_middle(around.lower[axis], around.upper[axis])
+    cut = section(mesh.points, mesh.corners, mesh.offsets, mesh.owner, mesh.neighbour, axis, place)
+    # of each triangle the first side is a piece of a cell's outline, the others lead to the cell's middle
+    outline, number = np.full(len(cut.triangles), 0b001), np.zeros(len(cut.triangles), np.int64)
+    return Layer(_MIDDLE.format("xyz"[axis]), cut.points, cut.triangles, outline, number, drawing.CELLS, shown=False)

@@ -1,0 +1,205 @@
+"""The lattice that the fibers cut: it fills the duct, fits across its levels, and meets the true cylinders."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pipeline.enclosure.duct import enclose
+from pipeline.enclosure.settings import EnclosureSettings
+from pipeline.errors import StageError
+from pipeline.geometry.box import Box
+from pipeline.geometry.faces import tet_faces
+from pipeline.geometry.fibers import FiberDistance
+from pipeline.geometry.tets import boundary, volumes
+from pipeline.mat.generate import generate
+from pipeline.mat.settings import LayeredSettings
+from pipeline.mesh.engines.lattice.cubes import lattice_tets
+from pipeline.mesh.engines.lattice.lattice import stuffed
+from pipeline.mesh.engines.lattice.octree import octree
+from pipeline.mesh.fill import fill
+from pipeline.mesh.settings import TetmeshSettings
+from pipeline.mesh.wall_error import fidelity
+from pipeline.nouns.arrays import Floats
+from pipeline.nouns.domain import FluidDomain
+from pipeline.nouns.fibers import Mat
+from pipeline.nouns.patches import FIBERS
+from pipeline.progress import silent
+from pipeline.quality.judge import judge
+from pipeline.surface.settings import SurfaceSettings
+from pipeline.surface.union import unite
+
+DIAMETER = 1.4e-6
+
+
+def graded(counts: tuple[int, int, int], seed: int) -> Floats:
+    """Distance to a few points at random, from the centers of the cubes of a box."""
+    rng = np.random.default_rng(seed)
+    centers = np.stack(np.meshgrid(*[np.arange(count) + 0.5 for count in counts], indexing="ij"), axis=-1)
+    points = rng.random((3, 3)) * counts
+    distance: Floats = np.linalg.norm(centers[..., None, :] - points, axis=-1).min(axis=-1)
+    return distance
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("counts", [(16, 16, 16), (9, 14, 23)])
+def test_the_cubes_tetrahedra_fill_the_box_and_fit_across_levels(counts: tuple[int, int, int], seed: int) -> None:
+    tree = octree(graded(counts, seed), (1.5, 4.5), 1.0)
+    assert len(np.unique(tree.level)) == 3
+    places, tets = lattice_tets(tree)
+    cells = volumes(places / 2.0, tets)
+    assert (cells > 0).all()
+    assert cells.sum() == pytest.approx(math.prod(counts), rel=1e-12)
+    # conforming: a face that belongs to one cell only lies on a plane of the box
+    faces, _ = boundary(tets)
+    corners = places[faces]
+    planes = [(corners[:, :, k] == end).all(axis=1) for k in range(3) for end in (0, 2 * counts[k])]
+    assert np.logical_or.reduce(planes).all()
+
+
+def test_neighboring_cubes_differ_by_one_level_at_the_most() -> None:
+    level = octree(graded((32, 32, 32), 7), (1.5, 4.5), 1.0).level.astype(int)
+    for axis in range(3):
+        assert np.abs(np.diff(level, axis=axis)).max() <= 1
+
+
+def test_inside_one_level_the_mesh_is_perfectly_orthogonal() -> None:
+    places, tets = lattice_tets(octree(np.zeros((6, 6, 6)), (), 1.0))
+    found = tet_faces(tets)
+    centers = places[tets[found.order]].mean(axis=1)
+    inner = found.triangles[: len(found.neighbour)]
+    away = ((places[inner] > 2) & (places[inner] < 10)).all(axis=(1, 2))
+    assert away.sum() > 100
+    a, b, c = (places[inner[away, k]].astype(float) for k in range(3))
+    normal = np.cross(b - a, c - a)
+    line = centers[found.neighbour[away]] - centers[found.owner[: len(inner)][away]]
+    np.testing.assert_allclose(np.cross(normal, line), 0.0, atol=1e-12)
+
+
+def one_piece(flat: tuple[bool, bool]) -> FiberDistance:
+    """A fiber of radius 0.5 from (1, 2, 2) to (3, 2, 2) in a box of 4."""
+    start, end = np.array([[1.0, 2, 2]]), np.array([[3.0, 2, 2]])
+    return FiberDistance.about(
+        start, end, np.array([0.5]), np.array([flat]), np.zeros(3), np.full(3, 4.0), (40, 40, 40), 9.0
+    )
+
+
+def test_the_distance_is_that_to_a_cylinder_and_to_its_ends() -> None:
+    points = np.array([[2.0, 2, 2], [2, 3, 2], [2, 2, 2.6], [0.2, 2, 2], [3.3, 2.4, 2], [3.3, 2.9, 2.0]])
+    round_ends = [-0.5, 0.5, 0.1, 0.3, 0.0, math.hypot(0.3, 0.9) - 0.5]
+    np.testing.assert_allclose(one_piece((False, False)).at(points), round_ends, atol=1e-12)
+    flat_ends = [-0.5, 0.5, 0.1, 0.8, 0.3, math.hypot(0.3, 0.4)]
+    np.testing.assert_allclose(one_piece((True, True)).at(points), flat_ends, atol=1e-12)
+
+
+def test_points_snap_to_the_nearest_place_of_the_surface_and_stay_on_their_plane() -> None:
+    field = one_piece((False, False))
+    points = np.array([[2.0, 2.6, 2.3], [2.0, 2.6, 2.3]])
+    moved, done = field.snapped(points, np.array([[1.0, 1, 1], [0, 1, 0]]), 0.5)
+    assert done.all()
+    outward = np.array([0.0, 0.6, 0.3]) / math.hypot(0.6, 0.3)
+    np.testing.assert_allclose(moved[0], np.array([2, 2, 2]) + 0.5 * outward, atol=1e-6)
+    np.testing.assert_allclose(moved[1], [2.0, 2 + math.sqrt(0.25 - 0.09), 2.3], atol=1e-6)
+    _, reached = field.snapped(points, np.ones((2, 3)), 0.01)
+    assert not reached.any()
+
+
+def across(edge: float) -> tuple[FluidDomain, TetmeshSettings]:
+    """A duct with one straight fiber from side to side, aslant."""
+    nodes = np.array([[0.0, 1e-6, 5e-6], [10e-6, 8e-6, 5.5e-6]])
+    slab = Box((0.0, 0.0, 4e-6), (10e-6, 10e-6, 6.5e-6))
+    mat = Mat(nodes, np.array([0, 2]), np.array([0.5 * DIAMETER]), slab, -1, "by hand")
+    surface = unite(mat, SurfaceSettings(sides=96, ring_spacing=0.5, smallest_edge=0.0))
+    return enclose(surface, EnclosureSettings(inlet=3e-6, outlet=3e-6)), TetmeshSettings(edge=edge)
+
+
+def wall_distances(edge: float) -> Floats:
+    """Distance of each of the lattice's vertices on the fiber from the fiber's axis, in radii."""
+    domain, settings = across(edge)
+    raw = stuffed(domain, settings, DIAMETER, silent)
+    faces, _ = boundary(raw.tets)
+    on_plane = np.zeros(len(faces), dtype=bool)
+    for axis in range(3):
+        for place in (domain.box.lower[axis], domain.box.upper[axis]):
+            on_plane |= (raw.points[faces][:, :, axis] == place).all(axis=1)
+    walls = raw.points[np.unique(faces[~on_plane])]
+    start, end = domain.pieces.start[0], domain.pieces.end[0]
+    line = (end - start) / np.linalg.norm(end - start)
+    distances: Floats = np.linalg.norm(np.cross(walls - start, line), axis=1) / (0.5 * DIAMETER)
+    return distances
+
+
+def test_every_vertex_on_a_fiber_lies_on_one_cylinder_that_nears_the_true_one_with_the_square_of_the_edge() -> None:
+    coarse, fine = wall_distances(0.5), wall_distances(0.25)
+    for found in (coarse, fine):
+        np.testing.assert_allclose(found, found.mean(), rtol=1e-4)
+    # chords lie within a circle by a sagitta that goes with the square of their length: the cylinder makes up for it
+    assert 1.0 < coarse.mean() < 1.05
+    assert (fine.mean() - 1.0) / (coarse.mean() - 1.0) == pytest.approx(0.25, abs=0.08)
+
+
+def test_the_fibers_volume_is_kept() -> None:
+    domain, settings = across(0.5)
+    mesh, measures = fill(domain, settings)
+    assert abs(measures.raw_volume_error) < 0.01
+    assert abs(measures.volume_error) < 1e-6
+    assert mesh.volume == pytest.approx(domain.volume, rel=1e-6)
+
+
+def test_the_walls_distance_from_the_true_fibers_is_measured() -> None:
+    domain, settings = across(0.5)
+    mesh, measures = fill(domain, settings)
+    found = measures.fidelity
+    assert found is not None
+    assert found == fidelity(mesh, domain)
+    (error,) = found.radius_error
+    assert abs(error) < 0.01  # the volume is right, so the radius is
+    assert 0 < found.mean_deviation < found.typical_deviation < found.largest_deviation < 0.1
+    # fibers that are thicker by a tenth leave the same walls inside by a tenth
+    thick = replace(domain, radius=1.1 * domain.radius)
+    assert fidelity(mesh, thick).radius_error[0] == pytest.approx((1.0 + error) / 1.1 - 1.0, abs=1e-3)
+
+
+def test_walls_farther_off_than_allowed_are_refused_with_what_to_do() -> None:
+    domain, _ = across(0.5)
+    with pytest.raises(StageError, match=r"allowed is 0.001; lower tetmesh.edge"):
+        fill(domain, TetmeshSettings(edge=0.5, deviation=0.001))
+
+
+def test_one_case_gives_one_mesh() -> None:
+    domain, settings = across(0.6)
+    (one, _), (two, _) = fill(domain, settings), fill(domain, settings)
+    np.testing.assert_array_equal(one.points, two.points)
+    np.testing.assert_array_equal(one.corners, two.corners)
+
+
+@pytest.mark.parametrize("contact", ["paper", "clear"])
+@pytest.mark.parametrize("seed", range(3))
+def test_random_mats_keep_every_limit(contact: str, seed: int) -> None:
+    settings = LayeredSettings.model_validate(
+        {
+            "generator": "layered", "side": "8 um", "fiber_diameter": "1.4 um", "relaxation_slope": 0.15,
+            "contact": contact, "seed": seed, "stop": {"coverage": 1.0},
+        }
+    )  # fmt: skip
+    surface = unite(generate(settings), SurfaceSettings())
+    domain = enclose(surface, EnclosureSettings(inlet=4e-6, outlet=4e-6))
+    mesh, measures = fill(domain, TetmeshSettings(edge=0.7))
+    report = judge(mesh)
+    assert report.passed, report.reasons
+    assert measures.faulty_cells == 0
+    assert mesh.volume == pytest.approx(domain.volume, rel=1e-6)
+    # air that was given to the fibers in crevices
+    assert measures.filled_volume < 1e-3
+    areas = np.linalg.norm(mesh.polyhedra().areas, axis=1)
+    assert areas[mesh.patch("inlet")].sum() == pytest.approx(domain.box.face_area, rel=1e-12)
+    assert areas[mesh.patch(FIBERS)].sum() > 0
+
+
+def test_a_lattice_beyond_memory_is_refused_with_what_to_do() -> None:
+    domain, _ = across(0.6)
+    with pytest.raises(StageError, match=r"lattice of 12 x 12 x 10 cubes.*raise tetmesh.edge"):
+        fill(domain, TetmeshSettings(edge=0.6, memory_limit=1e5))

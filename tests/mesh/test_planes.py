@@ -1,0 +1,67 @@
+"""A mesh whose planes have dents is found out: fTetWild can leave triangles of its input out."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+import numpy as np
+import pytest
+
+from pipeline.geometry.box import Box
+from pipeline.geometry.tets import boundary
+from pipeline.mesh.boundary import assign
+from pipeline.mesh.engines.ftetwild.ftetwild import _plane_errors
+from pipeline.mesh.improve.settle import at_fibers
+from pipeline.nouns.arrays import Floats, Ints
+from pipeline.nouns.domain import FluidDomain
+from pipeline.nouns.mesh import TetMesh
+from pipeline.nouns.patches import FIBERS, PATCHES
+from tests.mesh.boxes import kuhn_box
+from tests.sample_meshes import NO_PIECES
+
+UNIT = Box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+
+
+def hollow_box() -> tuple[Floats, Ints]:
+    """Split the unit cube into 5^3 cubes of tetrahedra, and leave the one in the middle out as the fiber."""
+    points, tets = kuhn_box(5)
+    inside = (np.abs(points[tets].mean(axis=1) - 0.5) < 0.1).all(axis=1)
+    return points, tets[~inside]
+
+
+def mesh_of(points: Floats, tets: Ints) -> TetMesh:
+    faces, _ = boundary(tets)
+    return TetMesh(points, tets, faces, assign(points, faces, UNIT, 0.0), PATCHES, UNIT)
+
+
+def domain_of(mesh: TetMesh) -> FluidDomain:
+    fiber = np.where(mesh.patch == PATCHES.index(FIBERS), 0, -1)
+    return FluidDomain(mesh.points, mesh.faces, mesh.patch, PATCHES, fiber, np.array([0.1]), UNIT, UNIT, NO_PIECES)
+
+
+def test_whole_planes_have_no_error() -> None:
+    points, tets = hollow_box()
+    errors = _plane_errors(points, tets, domain_of(mesh_of(points, tets)))
+    assert list(errors) == list(PATCHES[:-1])
+    assert list(errors.values()) == pytest.approx([0.0] * 6, abs=1e-14)
+
+
+@pytest.mark.parametrize(("axis", "name"), [(0, "xmin"), (1, "ymin"), (2, "inlet")])
+def test_a_dent_is_missing_from_its_plane(axis: int, name: str) -> None:
+    points, tets = hollow_box()
+    whole = domain_of(mesh_of(points, tets))
+    # each of the plane's 5 x 5 squares is the face of two cells
+    on_plane = ((points[:, axis] == 0.0)[tets].sum(axis=1) == 3) & ~(points[tets] > 0.9).any(axis=(1, 2))
+    inner = np.flatnonzero(on_plane & (np.delete(points[tets].mean(axis=1), axis, axis=1) > 0.2).all(axis=1))
+    errors = _plane_errors(points, np.delete(tets, inner[0], axis=0), whole)
+    assert errors.pop(name) == pytest.approx(-1 / 50)
+    assert list(errors.values()) == pytest.approx([0.0] * 5, abs=1e-14)
+
+
+def test_only_cells_with_a_vertex_on_a_fiber_may_be_given_to_it() -> None:
+    points, tets = hollow_box()
+    mesh = mesh_of(points, tets)
+    near = at_fibers(tets, mesh.faces[mesh.patch == PATCHES.index(FIBERS)], len(points))
+    # the fiber is the cube from 0.4 to 0.6
+    on_cube = np.asarray(((points > 0.39) & (points < 0.61)).all(axis=1))
+    np.testing.assert_array_equal(near, on_cube[tets].any(axis=1))
+    assert near.any()
+    assert not near.all()

@@ -1,0 +1,185 @@
+"""Arrays of fibers through the whole line, on meshes of three resolutions, against their exact drag."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+from pipeline.analytics.formulas.slip import SLIP_COEFFICIENT
+from pipeline.case import Case
+from pipeline.errors import CaseError
+from pipeline.line.run import Run, run
+from pipeline.mat.settings import ArraySettings
+from pipeline.progress import Progress, silent
+from validation.convergence import Convergence, convergence
+from validation.exact import hexagonal_drag, square_drag
+from validation.rows import row_drags
+
+SOLIDITIES = (0.01, 0.05, 0.1, 0.2, 0.3)
+FACTORS = (1.5, 1.0, 1 / 1.5)
+"""Mesh spacing of each rung over that of the case file, coarse to fine."""
+SLIP = 0.1
+"""Slip length over fiber radius of the rungs with slip."""
+
+_WIDE_GAP = 1.2  # diameters between neighboring fibers, from which on the fibers set the scale of the flow
+_EXACT = {"square": square_drag, "hexagonal": hexagonal_drag}
+
+
+@dataclass(frozen=True, slots=True)
+class Rung:
+    """One array on one mesh: its drag per length of fiber over viscosity times face velocity, F*, and its checks.
+
+    Parameters
+    ----------
+    arrangement : str
+    solidity : float [-]
+    slip : float [-]
+        Slip length over fiber radius.
+    edge : float [-]
+        Edge length at the fibers in fiber diameters, as asked for.
+    cells : int
+    spacing : float [-]
+        (Air volume / cells)^(1/3) in fiber diameters.
+    f_star : float [-]
+        Of the middle row.
+    first_row, last_row : float [-]
+        F* of the outer rows, which lack a neighbour.
+    exact : float [-]
+        F* of the endless array.
+    error : float [-]
+        F* of the middle row over the exact one, less 1.
+    force_balance, mass_balance : float [-]
+    iterations : int
+    converged : bool
+    mesh_seconds, solve_seconds : float [s]
+    """
+
+    arrangement: str
+    solidity: float
+    slip: float
+    edge: float
+    cells: int
+    spacing: float
+    f_star: float
+    first_row: float
+    last_row: float
+    exact: float
+    error: float
+    force_balance: float
+    mass_balance: float
+    iterations: int
+    converged: bool
+    mesh_seconds: float
+    solve_seconds: float
+
+
+def rung_case(case: Case, solidity: float, factor: float, slip: float = 0.0) -> Case:
+    """Give a case another solidity, and scale its mesh as a whole: edges, growth, envelope, polygons, rings, depth.
+
+    The lengths are the case's times the factor, and less where the gaps between the fibers are narrower than 1.2
+    diameters: then in the gaps' proportion. The plenums become one pitch long. Slip comes from the mean free path, as
+    it does in any case.
+
+    Raises
+    ------
+    CaseError
+        If the case is no array of an odd number of rows, three or more.
+    """
+    mat = case.mat
+    if not isinstance(mat, ArraySettings) or mat.rows < 3 or mat.rows % 2 == 0:
+        raise CaseError("the ladder needs an array with a middle row: mat.generator = array, rows = 3, 5, ...")
+    mesh, depth = case.tetmesh, mat.depth or mat.pitch
+    mat = ArraySettings.model_validate({**mat.model_dump(), "solidity": solidity})
+    gap = mat.pitch / mat.fiber_diameter - 1.0
+    factor *= min(1.0, gap / _WIDE_GAP)
+    # the flow is the same at every depth; a slab that stays as deep as its cells are large keeps the meshes alike
+    mat = mat.model_copy(update={"depth": depth * factor})
+    changes: dict[str, object] = {
+        "mat": mat,
+        # a multiple of four, so that the polygon of a fiber on a symmetry plane is cut in two halves
+        "surface": case.surface.model_copy(
+            update={
+                "sides": 4 * round(case.surface.sides / factor / 4),
+                "ring_spacing": case.surface.ring_spacing * factor,
+            }
+        ),
+        "enclosure": case.enclosure.model_copy(update={"inlet": mat.pitch, "outlet": mat.pitch}),
+        "tetmesh": mesh.model_copy(
+            update={name: getattr(mesh, name) * factor for name in ("edge", "growth", "largest_edge", "envelope")}
+        ),
+    }
+    if slip:
+        path = slip * 0.5 * mat.fiber_diameter / SLIP_COEFFICIENT
+        changes["flow"] = case.flow.model_copy(update={"mean_free_path": path})
+        changes["export"] = case.export.model_copy(update={"fiber_wall": "slip"})
+    return case.model_copy(update=changes)
+
+
+def climb(case: Case, folder: Path, tell: Progress = silent) -> Rung:
+    """Run a case that `rung_case` made, and read its drag.
+
+    Raises
+    ------
+    StageError
+        If a stage fails.
+    """
+    mat, flow = case.mat, case.flow.flow()
+    assert isinstance(mat, ArraySettings)
+    run(case, folder, "solve", tell=tell, without=frozenset({"report"}))
+    this = Run(case, folder)
+    solution, measures = this.solution, this.mesh_measures
+    length = this.mat.slab.size[1]
+    drags = row_drags(folder / "solve" / "openfoam", mat.rows, flow)
+    stars = [drag / (length * flow.viscosity * flow.face_velocity) for drag in drags]
+    slip = SLIP_COEFFICIENT * flow.mean_free_path / (0.5 * mat.fiber_diameter)
+    slip = slip if case.export.fiber_wall == "slip" else 0.0
+    exact = _EXACT[mat.arrangement](mat.solidity, slip)
+    return Rung(
+        arrangement=mat.arrangement,
+        solidity=mat.solidity,
+        slip=round(slip, 12),
+        edge=case.tetmesh.edge,
+        cells=measures.cells,
+        spacing=(measures.fluid_volume / measures.cells) ** (1 / 3) / mat.fiber_diameter,
+        f_star=stars[mat.rows // 2],
+        first_row=stars[0],
+        last_row=stars[-1],
+        exact=exact,
+        error=stars[mat.rows // 2] / exact - 1.0,
+        force_balance=solution.force_balance_error,
+        mass_balance=solution.mass_balance_error,
+        iterations=solution.iterations,
+        converged=solution.converged,
+        mesh_seconds=measures.mesher_seconds,
+        solve_seconds=solution.seconds,
+    )
+
+
+def ladder(
+    case: Case, folder: Path, solidities: tuple[float, ...] = SOLIDITIES, slip: float = 0.0, tell: Progress = silent
+) -> list[Rung]:
+    """Climb three rungs at each solidity, coarse to fine.
+
+    With slip the mesh of the rung without slip is used again where it is there: the wall is all that differs.
+    """
+    rungs = []
+    for solidity in solidities:
+        for level, factor in enumerate(FACTORS):
+            place = folder / f"solidity_{solidity:g}_{level}"
+            if slip:
+                place, without = place.with_name(f"{place.name}_slip"), place
+                if without.is_dir() and not place.exists():
+                    shutil.copytree(without, place)
+            rungs.append(climb(rung_case(case, solidity, factor, slip), place, tell))
+    return rungs
+
+
+def judged(rungs: list[Rung]) -> list[tuple[Rung, Convergence]]:
+    """Give the finest rung of each array with what its three rungs tell."""
+    results = []
+    for start in range(0, len(rungs), len(FACTORS)):
+        coarse, middle, fine = rungs[start : start + len(FACTORS)]
+        spacings = (coarse.spacing, middle.spacing, fine.spacing)
+        results.append((fine, convergence(spacings, (coarse.f_star, middle.f_star, fine.f_star))))
+    return results

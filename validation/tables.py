@@ -1,0 +1,125 @@
+"""The measured figures as tables in Markdown, put between a page's marks."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+import math
+from collections.abc import Sequence
+
+from pipeline.errors import StageError
+from validation.convergence import Convergence
+from validation.ladder import FACTORS, Rung, judged
+from validation.mats import MatRun, mean_and_half_width, over_finest, spread
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Give a table in Markdown."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)
+
+
+def filled(page: str, name: str, content: str) -> str:
+    r"""Put content between ``<!-- name -->`` and ``<!-- end of name -->``.
+
+    Raises
+    ------
+    StageError
+        If the page has no such marks.
+
+    Examples
+    --------
+    >>> filled("a <!-- t --> old <!-- end of t --> b", "t", "new")
+    'a <!-- t -->\n\nnew\n\n<!-- end of t --> b'
+    """
+    start, end = f"<!-- {name} -->", f"<!-- end of {name} -->"
+    before, opened, rest = page.partition(start)
+    _, closed, after = rest.partition(end)
+    if not opened or not closed:
+        raise StageError(f"the page has no place for {name}: put {start} and {end} where it goes")
+    return f"{before}{start}\n\n{content}\n\n{end}{after}"
+
+
+def ladder_table(rungs: list[Rung]) -> str:
+    """F* on three meshes against the exact one, with observed order, extrapolation and grid convergence index."""
+    rows = []
+    for number, (fine, found) in enumerate(judged(rungs)):
+        climbed = rungs[len(FACTORS) * number : len(FACTORS) * (number + 1)]
+        rows.append(
+            [
+                fine.arrangement,
+                f"{fine.solidity:g}",
+                f"{fine.exact:.3f}",
+                *(f"{rung.f_star:.3f} ({_percent(rung.error)})" for rung in climbed),
+                _order(found),
+                f"{found.extrapolated:.3f} ({_percent(found.extrapolated / fine.exact - 1.0)})",
+                f"{100.0 * found.index:.1f} %",
+                f"{fine.cells:,}",
+            ]
+        )
+    head = ["array", "solidity", "exact F*", "coarse", "middle", "fine", "order", "extrapolated", "GCI", "cells (fine)"]
+    return table(head, rows)
+
+
+def balance_table(groups: Sequence[tuple[str, Sequence[Rung] | Sequence[MatRun]]]) -> str:
+    """Worst force and mass balance, and the effort, of each group of runs."""
+    rows = []
+    for name, runs in groups:
+        rows.append(
+            [
+                name,
+                str(len(runs)),
+                f"{sum(each.converged for each in runs)}",
+                f"{max(abs(each.force_balance) for each in runs):.1e}",
+                f"{max(abs(each.mass_balance) for each in runs):.1e}",
+                f"{min(each.iterations for each in runs)} to {max(each.iterations for each in runs)}",
+                f"{sum(each.mesh_seconds for each in runs) / 60:.0f} + "
+                f"{sum(each.solve_seconds for each in runs) / 60:.0f} min",
+            ]
+        )
+    head = ["runs", "number", "settled", "forces, worst", "mass, worst", "iterations", "meshing + solving"]
+    return table(head, rows)
+
+
+def resolution_table(runs: list[MatRun]) -> str:
+    """Pressure drop of the same mats on three meshes."""
+    over = dict(over_finest(runs))
+    rows = []
+    for edge, group in reversed(spread(runs, "edge")):
+        rows.append(
+            [
+                f"{edge:g}",
+                f"{sum(each.cells for each in group) // len(group):,}",
+                *(f"{each.cfd:.3f}" for each in group),
+                _with_width([100.0 * (value - 1.0) for value in over[edge]], "%", signed=True),
+            ]
+        )
+    seeds = [f"seed {each.seed} [Pa]" for each in spread(runs, "edge")[0][1]]
+    return table(["edge [diameters]", "cells (mean)", *seeds, "against the finest"], rows)
+
+
+def size_table(runs: list[MatRun]) -> str:
+    """Pressure drop of mats in boxes of several sides."""
+    rows = []
+    for side, group in spread(runs, "side"):
+        rows.append(
+            [
+                f"{1e6 * side:g} um",
+                f"{sum(each.fibers for each in group) / len(group):.1f}",
+                _with_width([100.0 * each.solidity for each in group], "%"),
+                _with_width([each.cfd for each in group], "Pa"),
+                _with_width([each.cfd / each.davies for each in group], ""),
+            ]
+        )
+    return table(["side", "fibers (mean)", "solidity of the mesh", "CFD", "CFD over Davies"], rows)
+
+
+def _percent(value: float) -> str:
+    return f"{100.0 * value:+.2f} %"
+
+
+def _order(found: Convergence) -> str:
+    return "none (swings)" if math.isnan(found.order) else f"{found.order:.1f}"
+
+
+def _with_width(values: list[float], unit: str, signed: bool = False) -> str:
+    mean, half = mean_and_half_width(values)
+    return f"{mean:{'+' if signed else ''}.3g} ± {half:.2g} {unit}".strip()
