@@ -33,8 +33,8 @@ def cases(case: Case, array: bool) -> list[tuple[str, float, Case]]:
         for edge in edges:
             mesh = {"engine": engine, "edge": edge, "largest_edge": max(3.0, 4.1 * edge), **changes}
             base = rung_case(case, 0.1, 1.0) if array else case
-            defaults = type(base.tetmesh)()
-            found_cases.append((engine, edge, base.model_copy(update={"tetmesh": defaults.model_copy(update=mesh)})))
+            meshed = type(base.tetmesh).model_validate(mesh)
+            found_cases.append((engine, edge, base.model_copy(update={"tetmesh": meshed})))
     return found_cases
 
 

@@ -52,7 +52,7 @@ def mesh_with(engine: str, folder: Path) -> Row:
         mesh = plain(domain)
     else:
         changes = {"engine": engine} | ({"growth": GROWTH[engine]} if engine in GROWTH else {})
-        mesh, _ = fill(domain, case.tetmesh.model_copy(update=changes))
+        mesh, _ = fill(domain, case.tetmesh.changed(**changes))
     report = judge(mesh)
     angle = report.metrics["non_orthogonality"]
     error = (domain.volume - mesh.volume) / (domain.box.volume - domain.volume)

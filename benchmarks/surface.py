@@ -18,7 +18,8 @@ from pipeline.enclosure.settings import EnclosureSettings
 from pipeline.geometry.tets import volumes
 from pipeline.mat.generate import generate
 from pipeline.mat.settings import Constant, LayeredSettings, Stop
-from pipeline.mesh.engines.ftetwild.child import Limits, run_child
+from pipeline.mesh.engines.ftetwild.child import run_child
+from pipeline.mesh.engines.limits import Limits
 from pipeline.surface.measures import measure_surface
 from pipeline.surface.settings import SurfaceSettings
 from pipeline.surface.union import unite

@@ -188,6 +188,10 @@ def _line(error: Any, content: dict[str, Any]) -> str:
         case "extra_forbidden":
             if keys[-1] in _known(keys[:-1]):
                 return f"{place}: does not go with {_kind_of(keys[:-1], content)}; leave it out"
+            moved = [table for table in _known(keys[:-1]) if keys[-1] in _known([*keys[:-1], table])]
+            if moved:
+                places = " or ".join(".".join([*keys[:-1], table, keys[-1]]) for table in moved)
+                return f"{place}: no key of [{'.'.join(keys[:-1])}]; write {places}"
             near = difflib.get_close_matches(keys[-1], _known(keys[:-1]), n=1)
             advice = f"did you mean {near[0]}?" if near else f"known: {', '.join(_known(keys[:-1])) or 'none'}"
             return f"{place}: unknown key; {advice}"

@@ -11,7 +11,7 @@ from pipeline.line.run import Run, run
 from pipeline.mat.settings import BoxSettings, LayeredSettings
 
 CASES = Path(__file__).parent.parent / "cases"
-COARSE = ("tetmesh.edge=0.9", "tetmesh.growth=0.6", "surface.sides=8", "tetmesh.envelope=0.05")
+COARSE = ("tetmesh.edge=0.9", "tetmesh.growth=0.6", "surface.sides=8")
 
 
 @pytest.mark.slow

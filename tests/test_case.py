@@ -74,9 +74,9 @@ def test_a_missing_file_of_fibers_is_told_by_its_key() -> None:
 
 
 def test_all_mistakes_are_told_at_once() -> None:
-    message = changed("mat.side=20", "tetmesh.passes=0", "flow.temperature='warm'", "surface.joint='glued'")
+    message = changed("mat.side=20", "tetmesh.edge=0", "flow.temperature='warm'", "surface.joint='glued'")
     assert message.startswith("case.toml has 4 mistakes:")
-    for place in ("mat.side", "tetmesh.passes", "flow.temperature", "surface.joint"):
+    for place in ("mat.side", "tetmesh.edge", "flow.temperature", "surface.joint"):
         assert place in message
 
 

@@ -89,7 +89,7 @@ def rung_case(case: Case, solidity: float, factor: float, slip: float = 0.0) -> 
     mat = case.mat
     if not isinstance(mat, ArraySettings) or mat.rows < 3 or mat.rows % 2 == 0:
         raise CaseError("the ladder needs an array with a middle row: mat.generator = array, rows = 3, 5, ...")
-    mesh, depth = case.tetmesh, mat.depth or mat.pitch
+    depth = mat.depth or mat.pitch
     mat = ArraySettings.model_validate({**mat.model_dump(), "solidity": solidity})
     gap = mat.pitch / mat.fiber_diameter - 1.0
     factor *= min(1.0, gap / _WIDE_GAP)
@@ -105,9 +105,7 @@ def rung_case(case: Case, solidity: float, factor: float, slip: float = 0.0) -> 
             }
         ),
         "enclosure": case.enclosure.model_copy(update={"inlet": mat.pitch, "outlet": mat.pitch}),
-        "tetmesh": mesh.model_copy(
-            update={name: getattr(mesh, name) * factor for name in ("edge", "growth", "largest_edge", "envelope")}
-        ),
+        "tetmesh": case.tetmesh.scaled(factor),
     }
     if slip:
         path = slip * 0.5 * mat.fiber_diameter / SLIP_COEFFICIENT

@@ -71,12 +71,10 @@ def mat_case(case: Case, side: float, factor: float, seed: int) -> Case:
     """
     if not isinstance(case.mat, LayeredSettings):
         raise CaseError("the study of mats needs mat.generator = layered")
-    mesh = case.tetmesh
-    scaled = {name: getattr(mesh, name) * factor for name in ("edge", "growth", "largest_edge", "envelope")}
     return case.model_copy(
         update={
             "mat": case.mat.model_copy(update={"side": side, "seed": seed}),
-            "tetmesh": mesh.model_copy(update=scaled),
+            "tetmesh": case.tetmesh.scaled(factor),
         }
     )
 

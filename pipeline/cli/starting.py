@@ -73,17 +73,34 @@ def first_case(generator: str) -> str:
     for key in keys(Case):
         settings = _GENERATORS[generator] if key.name == "mat" else key.tables[0]
         lines += ["", "", *_comment(key.meaning), f"[{key.name}]", *_table(settings, generator)]
+        if key.name != "mat":
+            lines += _nested_tables(key.name, settings)
         if key.name == "mat" and generator in _FIRST_STOP:
             lines += ["", *_comment("When the mat is complete: exactly one quantity."), "[mat.stop]"]
             lines += _table(Stop, generator)
     return "\n".join(lines) + "\n"
 
 
+def _nested_tables(path: str, settings: type[BaseModel]) -> Iterator[str]:
+    """Give the tables within a table, as the engines' own within the mesh's; those not in use as comments alone."""
+    for key in keys(settings):
+        if key.takes != "a table":
+            continue
+        (table,) = key.tables
+        lines = ["", *_comment(key.meaning), f"[{path}.{key.name}]", *_table(table, "")]
+        used = getattr(settings(), key.name) is not None
+        yield from lines if used else (line if not line or line.startswith("# ") else _behind(line) for line in lines)
+
+
+def _behind(line: str) -> str:
+    return f"# {line.removeprefix('#')}"
+
+
 def _table(settings: type[BaseModel], generator: str) -> Iterator[str]:
     stop, target = _FIRST_STOP.get(generator, ("", ""))
     # the key that says what kind of table this is comes first
     for key in sorted(keys(settings), key=lambda key: key.name != "generator"):
-        if key.tables == (Stop,):
+        if key.takes == "a table":
             continue
         yield ""
         if key.name == "generator":

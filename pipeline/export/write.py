@@ -63,7 +63,7 @@ def export(
         if unfit:
             raise StageError(
                 f"{', '.join(unfit)} holds tetrahedra only, and the mesh has other cells: take openfoam, vtk or fluent "
-                "in export.formats, or set tetmesh.engine to lattice or tetwild"
+                "in export.formats, or a tetmesh.engine that makes tetrahedra"
             )
     for name in settings.formats:
         place = folder / name

@@ -1,34 +1,36 @@
-"""What a user may ask of the tetrahedral mesh."""
+"""What a user may ask of the mesh: keys that every engine reads, and a table for each engine's own."""
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-from typing import Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    SerializerFunctionWrapHandler,
+    create_model,
+    model_serializer,
+    model_validator,
+)
 
-from pipeline.units import Duration, Fraction, Memory, PositiveRatio, Ratio
+from pipeline.mesh.engines.engine import Engine, EngineSettings
+from pipeline.mesh.engines.registry import DEFAULT, ENGINES
+from pipeline.units import Fraction, Memory, PositiveRatio, Ratio
 
-MEMORY_SHARE = 0.85
-"""Share of the machine's memory that an engine may use where the case names no limit."""
+_Own = TypeVar("_Own", bound=EngineSettings)
 
 
-class TetmeshSettings(BaseModel):
+class SharedSettings(BaseModel):
     """Settings of the stage `tetmesh`; lengths are in mean fiber diameters, so that a case scales as a whole."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    engine: Literal["lattice", "tetwild", "snappy"] = Field(
-        default="lattice",
-        description="The mesher: a body-centered cubic lattice cut by the fibers (quick, the same every time), "
-        "fTetWild, or OpenFOAM's snappyHexMesh (hexahedra split near the fibers; OpenFOAM has to be installed; runs on "
-        "many cores and machines).",
+    engine: str = Field(
+        default=DEFAULT, description="The mesher: " + "; ".join(f'"{e.name}": {e.meaning}' for e in ENGINES.values())
     )
-    cores: int = Field(default=1, ge=1, le=4096, description="Processes that snappyHexMesh runs in; above 1 needs MPI.")
     edge: PositiveRatio = Field(
-        default=0.6,
-        le=20,
-        description="Edge length of the tetrahedra at the fibers, in mean fiber diameters; snappyHexMesh's cubes "
-        "have half of it and the same volume.",
+        default=0.6, le=20, description="Edge length of the tetrahedra at the fibers, in mean fiber diameters."
     )
     growth: Ratio = Field(
         default=1.0,
@@ -38,23 +40,6 @@ class TetmeshSettings(BaseModel):
     largest_edge: PositiveRatio = Field(
         default=3.0, description="Longest edge length far from the fibers, in mean fiber diameters."
     )
-    envelope: PositiveRatio = Field(
-        default=0.04,
-        le=0.25,
-        description="How far the mesh's boundary may stray from the fibers' surface, in mean fiber diameters.",
-    )
-    passes: int = Field(
-        default=2,
-        ge=1,
-        le=200,
-        description="Rounds of splitting, collapsing, swapping and smoothing before the edge lengths are refined.",
-    )
-    stop_energy: PositiveRatio = Field(
-        default=100.0,
-        ge=3.0,
-        description="Conformal energy of the worst tetrahedron at which rounds end (3 is ideal); "
-        "the few cells that a solver would object to are mended afterwards.",
-    )
     volume_error: Fraction = Field(
         default=0.02, description="Largest error of the fibers' volume against the surface that is accepted."
     )
@@ -63,15 +48,82 @@ class TetmeshSettings(BaseModel):
         description="Distance from the true fibers within which 99 % of the walls' area has to lie, in mean fiber "
         "diameters.",
     )
-    time_limit: Duration = Field(default=3600.0, description="The mesher is ended after this time.")
     memory_limit: Memory | None = Field(
         default=None, description="The mesher is ended above this much memory; if left out, 85 % of the machine's."
     )
 
+    @property
+    def mesher(self) -> Engine:
+        """The engine that the case names."""
+        return ENGINES[self.engine]
+
+    def own(self, kind: type[_Own]) -> _Own:
+        """Give the chosen engine's own table, which is of that kind.
+
+        Raises
+        ------
+        TypeError
+            If the case names another engine.
+        """
+        table = getattr(self, self.engine)
+        if not isinstance(table, kind):
+            raise TypeError(f"the engine {self.engine} has {type(table).__name__}, not {kind.__name__}")
+        return table
+
+    def changed(self, **keys: object) -> Self:
+        """Give a copy with other values of shared keys and of the chosen engine's own.
+
+        With another `engine` the copy has that engine's table, at its defaults where `keys` do not say otherwise.
+        """
+        content = self.model_dump()
+        old = content.pop(self.engine)
+        engine = ENGINES[str(keys.get("engine", self.engine))]
+        own = {key: value for key, value in keys.items() if key in engine.settings.model_fields}
+        shared = {key: value for key, value in keys.items() if key not in own}
+        table = {**(old if engine.name == self.engine else {}), **own}
+        return type(self).model_validate({**content, **shared, engine.name: table})
+
+    def scaled(self, factor: float) -> Self:
+        """Give a copy whose every length is longer by a factor; growth too, so that as many cells lie in a gap."""
+        lengths = {name: getattr(self, name) * factor for name in ("edge", "growth", "largest_edge")}
+        envelope = getattr(getattr(self, self.engine), "envelope", None)
+        return self.changed(**lengths, **({} if envelope is None else {"envelope": envelope * factor}))
+
+    @model_validator(mode="before")
+    @classmethod
+    def _chosen_table_is_there(cls, content: Any) -> Any:
+        # a default that changes must change what the results depend on: the chosen table is always written out
+        if not isinstance(content, dict):
+            return content
+        engine = content.get("engine", DEFAULT)
+        known = isinstance(engine, str) and engine in ENGINES
+        return {**content, engine: {}} if known and content.get(engine) is None else content
+
     @model_validator(mode="after")
     def _nothing_is_silently_ignored(self) -> Self:
-        others = ("envelope", "passes", "stop_energy") if self.engine == "snappy" else ("cores",)
-        for name in others:
-            if getattr(self, name) != type(self).model_fields[name].default:
-                raise ValueError(f'{name} means nothing to the engine "{self.engine}"; leave it out')
+        for name in ENGINES:
+            if name != self.engine and getattr(self, name) is not None:
+                raise ValueError(
+                    f'the table [tetmesh.{name}] means nothing to tetmesh.engine = "{self.engine}"; leave it out'
+                )
         return self
+
+    @model_serializer(mode="wrap")
+    def _chosen_table_alone(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return {key: value for key, value in handler(self).items() if key == self.engine or key not in ENGINES}
+
+
+if TYPE_CHECKING:
+    TetmeshSettings = SharedSettings
+else:
+    # pydantic makes each engine's table a key of its own: an engine adds none here
+    TetmeshSettings = create_model(
+        "TetmeshSettings",
+        __base__=SharedSettings,
+        __doc__=SharedSettings.__doc__,
+        engine=(Literal[tuple(ENGINES)], SharedSettings.model_fields["engine"]),
+        **{
+            name: (engine.settings | None, Field(default=None, description=engine.settings.__doc__))
+            for name, engine in ENGINES.items()
+        },
+    )

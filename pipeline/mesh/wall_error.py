@@ -55,7 +55,7 @@ def fidelity(mesh: FaceMesh, domain: FluidDomain) -> Fidelity:
     -------
     Fidelity
     """
-    unit = 2.0 * float(domain.radius.mean())
+    unit = domain.mean_diameter
     which = mesh.patch(FIBERS)
     points, triangles = fanned(mesh.points, mesh.corners, mesh.offsets[which.start : which.stop + 1])
     corners = points[triangles]

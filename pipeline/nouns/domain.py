@@ -69,6 +69,11 @@ class FluidDomain:
         require(self.volume > 0, "the duct's surface is inside out")
 
     @property
+    def mean_diameter(self) -> float:
+        """Mean fiber diameter [m], the unit of a mesh's lengths in a case file."""
+        return 2.0 * float(self.radius.mean())
+
+    @property
     def volume(self) -> float:
         """Volume of the air [m3]."""
         return enclosed_volume(self.points, self.triangles)

@@ -14,6 +14,7 @@ from pipeline.case import Case, read_case
 from pipeline.cli.bundled import bundled
 from pipeline.cli.describe import keys
 from pipeline.cli.starting import first_case
+from pipeline.mesh.engines.registry import ENGINES
 from tests.cli.conftest import Fibertwin
 
 GENERATORS = ("layered", "box", "array", "file")
@@ -42,7 +43,17 @@ def test_every_key_of_every_stage_stands_in_a_first_case() -> None:
     tables = tomllib.loads(re.sub(r"^#(?=[a-z_]+ = )", "", first_case("layered"), flags=re.MULTILINE))
     for key in keys(Case):
         if key.name != "mat":
-            assert set(tables[key.name]) == set(key.tables[0].model_fields)
+            settings = key.tables[0]
+            assert set(tables[key.name]) == {name for name in settings.model_fields if name not in ENGINES} | {
+                name for name in ENGINES if getattr(settings(), name, None) is not None
+            }
+
+
+def test_the_tables_of_engines_that_are_not_in_use_stand_as_comments() -> None:
+    text = first_case("layered")
+    for name, engine in ENGINES.items():
+        assert f"[tetmesh.{name}]" in text
+        assert all(f"{key} = " in text for key in engine.settings.model_fields)
 
 
 def test_a_file_that_is_there_stays_as_it_is(fibertwin: Fibertwin, tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ import pytest
 from pipeline.case import read_case
 from pipeline.errors import CaseError, StageError
 from pipeline.mat.settings import ArraySettings
+from pipeline.mesh.engines.ftetwild.engine import TetwildSettings
 from validation.ladder import Rung, climb, judged, rung_case
 from validation.mats import MatRun, mat_case, over_finest
 from validation.records import read_records, write_records
@@ -37,10 +38,11 @@ def test_a_rung_scales_every_length_of_the_mesh_and_the_polygon_the_other_way() 
     assert case.mat.depth is not None
     assert (finer.mat.solidity, finer.mat.depth) == (0.05, 0.5 * case.mat.depth)
     assert finer.enclosure.inlet == finer.enclosure.outlet == finer.mat.pitch
-    for name in ("edge", "growth", "largest_edge", "envelope"):
+    for name in ("edge", "growth", "largest_edge"):
         assert getattr(finer.tetmesh, name) == 0.5 * getattr(case.tetmesh, name)
+    assert finer.tetmesh.own(TetwildSettings).envelope == 0.5 * case.tetmesh.own(TetwildSettings).envelope
     assert finer.surface.sides == 2 * case.surface.sides
-    assert finer.tetmesh.passes == case.tetmesh.passes
+    assert finer.tetmesh.own(TetwildSettings).passes == case.tetmesh.own(TetwildSettings).passes
 
 
 def test_narrow_gaps_make_the_mesh_finer() -> None:

@@ -16,11 +16,14 @@ class RawMesh:
     points : (n, 3) array [m]
     tets : (m, 4) int array
         Positive; some points may belong to none.
+    leash : float [m]
+        How far mending may move a point of a fiber's wall.
     seconds : float [s]
     peak_memory : int [byte]
     """
 
     points: Floats
     tets: Ints
+    leash: float
     seconds: float
     peak_memory: int

@@ -90,7 +90,7 @@ def _solidities(content: ReportContent, c: Comparison) -> list[Check]:
     # the case says how much of the fibers' volume the mesh may lose
     allowed = content.case.tetmesh.volume_error
     fine = abs(kept) <= allowed
-    advice = "" if fine else "; lower tetmesh.envelope or tetmesh.edge"
+    advice = "" if fine else f"; {content.case.tetmesh.mesher.truer}"
     return [
         Check(
             GOOD if fine else BAD,
@@ -177,11 +177,13 @@ def steps(content: ReportContent) -> list[Step]:
     if content.comparison is None or content.mesh is None:
         found.append(Step("This run is not complete; the same command goes on.", f"fibertwin run CASE --out {folder}"))
     if content.quality is not None and content.quality.verdict == "fail":
+        mesh = content.case.tetmesh
+        overrides = "".join(f" --set {shlex.quote(override)}" for override in mesh.mesher.better(mesh))
         found.append(
             Step(
-                "Mend the mesh before solving: more passes, finer cells or another seed; "
+                "Mend the mesh before solving: let the mesher do more, or take another seed; "
                 "clearance between fibers spares the sharp crevices that make most bad cells.",
-                f"fibertwin run CASE --out {folder} --set tetmesh.passes={2 * content.case.tetmesh.passes}",
+                f"fibertwin run CASE --out {folder}{overrides}",
             )
         )
     exported = content.manifests.get("export", {}).get("counts", {}).get("formats", ())

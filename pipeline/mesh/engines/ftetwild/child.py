@@ -17,6 +17,7 @@ import psutil
 
 from pipeline.errors import StageError
 from pipeline.mesh.engines.ftetwild import worker
+from pipeline.mesh.engines.limits import Limits
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.progress import Progress
 
@@ -24,14 +25,6 @@ from pipeline.progress import Progress
 _ROUND = re.compile(rb"/ pass (\d+) /|^/{9}(\d+) ", re.MULTILINE)
 _POLL = 0.2  # seconds between two looks at the child
 _TAIL = 5  # lines of the child's log that an error quotes
-
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """What the child may use: seconds, and bytes of memory."""
-
-    seconds: float
-    memory: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +85,9 @@ def run_child(
         with np.load(folder / worker.OUTPUT, allow_pickle=False) as result:
             mesh_points, tets = result["points"].astype(np.float64), result["tets"].astype(np.int64)
     if len(tets) == 0:
-        raise StageError(f"fTetWild gave no tetrahedron from {len(triangles)} triangles; lower tetmesh.envelope")
+        raise StageError(
+            f"fTetWild gave no tetrahedron from {len(triangles)} triangles; lower tetmesh.tetwild.envelope"
+        )
     return Meshed(mesh_points, tets, seconds, peak)
 
 
@@ -109,8 +104,9 @@ def _watch(child: "subprocess.Popen[bytes]", log: Path, passes: int, limits: Lim
         seconds = time.monotonic() - began
         if seconds > limits.seconds:
             raise StageError(
-                f"fTetWild was ended after {seconds:.0f} s, the limit, while {state}; raise tetmesh.time_limit, "
-                "or make the mesh coarser: raise tetmesh.edge or lower tetmesh.passes"
+                f"fTetWild was ended after {seconds:.0f} s, the limit, while {state}; raise "
+                "tetmesh.tetwild.time_limit, or make the mesh coarser: raise tetmesh.edge or lower "
+                "tetmesh.tetwild.passes"
             )
         if peak > limits.memory:
             raise StageError(
@@ -139,6 +135,6 @@ def _crash(code: int, log: Path, seconds: float) -> str:
     how = f"was killed by signal {-code}" if code < 0 else f"ended with exit code {code}"
     advice = "the system ends processes when memory runs out; " if code == -9 else ""
     return (
-        f"fTetWild {how} after {seconds:.0f} s; {advice}change tetmesh.envelope or tetmesh.edge a little "
+        f"fTetWild {how} after {seconds:.0f} s; {advice}change tetmesh.tetwild.envelope or tetmesh.edge a little "
         f"(a tenth is enough), or another mat.seed; its last lines: {last}"
     )

@@ -3,24 +3,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import numpy as np
-import psutil
 
 from pipeline.errors import StageError
 from pipeline.geometry.box import Box
 from pipeline.geometry.tets import boundary
 from pipeline.geometry.triangles import area_vectors
 from pipeline.mesh.boundary import assign, flattened, planes
-from pipeline.mesh.engines.ftetwild.child import Limits, Meshed, run_child
+from pipeline.mesh.engines.ftetwild.child import Meshed, run_child
+from pipeline.mesh.engines.ftetwild.engine import TetwildSettings
 from pipeline.mesh.engines.ftetwild.size_field import size_field
+from pipeline.mesh.engines.limits import Limits, memory_allowed
 from pipeline.mesh.engines.raw import RawMesh
 from pipeline.mesh.improve.finish import used_points
-from pipeline.mesh.settings import MEMORY_SHARE, TetmeshSettings
+from pipeline.mesh.settings import TetmeshSettings
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.patches import FIBERS
 from pipeline.progress import Progress
 
 _ATTEMPTS = 3  # of the mesher at keeping the duct's planes; its randomness differs each time
+_WALL_LEASH = 0.5  # envelopes that mending may move a vertex of a fiber
 _PLANE_ERROR = 0.01  # of a plane's area; rounding of the fibers' cuts takes a few thousandths
 
 
@@ -48,13 +50,14 @@ def tetrahedralized(domain: FluidDomain, settings: TetmeshSettings, unit: float,
     """
     # fTetWild compares an area with 1e-8 of a length: only geometry of order one survives that
     middle = 0.5 * (np.array(domain.box.lower) + np.array(domain.box.upper))
+    own = settings.own(TetwildSettings)
     for _ in range(_ATTEMPTS):
         raw = _run((domain.points - middle) / unit, domain, settings, tell)
         tell("finding the patches")
         points, tets = used_points(raw.points * unit + middle, raw.tets)
         faces, _ = boundary(tets)
         # two envelopes: the mesher bounds the distance to the surface, not the distance along the plane's normal
-        patch = assign(points, faces, domain.box, tolerance=2.0 * settings.envelope * unit)
+        patch = assign(points, faces, domain.box, tolerance=2.0 * own.envelope * unit)
         points = flattened(points, faces, patch, domain.box)
         tets = _without_flat_sides(points, tets, domain.box)
         # fTetWild may leave triangles of its input out, by chance: a dent in a plane then counts as fiber, which the
@@ -62,12 +65,12 @@ def tetrahedralized(domain: FluidDomain, settings: TetmeshSettings, unit: float,
         errors = _plane_errors(points, tets, domain)
         worst = max(errors, key=lambda name: abs(errors[name]))
         if abs(errors[worst]) <= _PLANE_ERROR:
-            return RawMesh(points, tets, raw.seconds, raw.peak_memory)
+            return RawMesh(points, tets, _WALL_LEASH * own.envelope * unit, raw.seconds, raw.peak_memory)
         tell(f"the mesher lost part of {worst}: meshing again")
     raise StageError(
         f"the mesher lost part of the patch {worst} {_ATTEMPTS} times, whose area is off by {errors[worst]:+.2%} "
-        f"(allowed: {_PLANE_ERROR:.0%}); raise tetmesh.passes (now {settings.passes}) or tetmesh.envelope, or lower "
-        "surface.sides"
+        f"(allowed: {_PLANE_ERROR:.0%}); raise tetmesh.tetwild.passes (now {own.passes}) "
+        "or tetmesh.tetwild.envelope, or lower surface.sides"
     )
 
 
@@ -88,6 +91,7 @@ def _area(points: Floats, faces: Ints) -> float:
 
 
 def _run(points: Floats, domain: FluidDomain, settings: TetmeshSettings, tell: Progress) -> Meshed:
+    own = settings.own(TetwildSettings)
     diagonal = float(np.linalg.norm(np.ptp(points, axis=0)))
     on_fibers = np.unique(domain.triangles[domain.patch == domain.patches.index(FIBERS)])
     sizes = size_field(
@@ -97,16 +101,16 @@ def _run(points: Floats, domain: FluidDomain, settings: TetmeshSettings, tell: P
         # the field can only shorten the mesher's own edge length
         "edge_length_abs": float(sizes["bg_values"].max()),
         # relative to the diagonal there, to the fiber here: a longer plenum must not loosen the fibers
-        "epsilon": settings.envelope / diagonal,
-        "stop_energy": settings.stop_energy,
-        "num_opt_iter": settings.passes,
+        "epsilon": own.envelope / diagonal,
+        "stop_energy": own.stop_energy,
+        "num_opt_iter": own.passes,
         "num_threads": 1,  # a second one saves a tenth of the time
         "vtk_ordering": True,  # else every volume is negative
         "quiet": False,  # the log is what progress is read from
         "loglevel": 3,
     }
-    memory = settings.memory_limit or MEMORY_SHARE * psutil.virtual_memory().total
-    return run_child(points, domain.triangles, options, sizes, Limits(settings.time_limit, memory), tell)
+    limits = Limits(own.time_limit, memory_allowed(settings.memory_limit))
+    return run_child(points, domain.triangles, options, sizes, limits, tell)
 
 
 def _without_flat_sides(points: Floats, tets: Ints, box: Box) -> Ints:

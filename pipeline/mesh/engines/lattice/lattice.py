@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-import psutil
 
 from pipeline.errors import StageError
 from pipeline.geometry.tets import boundary, volumes
 from pipeline.geometry.triangles import area_vectors
 from pipeline.machine import peak_memory
 from pipeline.mesh.distance import fiber_distance
+from pipeline.mesh.engines.limits import memory_allowed
 from pipeline.mesh.engines.raw import RawMesh
-from pipeline.mesh.settings import MEMORY_SHARE, TetmeshSettings
+from pipeline.mesh.settings import TetmeshSettings
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
 from pipeline.progress import Progress
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 _SNAP = 0.25  # cube edges between a vertex and the surface up to which the vertex moves onto it
 _LEASH = 2.0  # distances from the surface that a vertex may move, when it has to stay on a plane of the duct
+_WALL_LEASH = 0.02  # fiber diameters that mending may move a vertex of a wall
 _OFFSETS = 2  # rounds: the second finds the fibers' volume right to some thousandths
 _LEAST = 1e-3  # volume of a tetrahedron whose vertices have moved, in smallest cubes; there are 12 to a cube
 _LEVELS = 2  # doublings of the cubes' edge
@@ -94,7 +95,7 @@ def stuffed(domain: FluidDomain, settings: TetmeshSettings, unit: float, tell: P
         # chords lie within a circle: the fibers have to be a little thicker for their volume to be right
         offset += (volumes(points, cells).sum() - domain.volume / unit**3) / _wall_area(points, cells, plane)
     in_meters = np.where(plane < 0, lower, np.where(plane > 0, upper, points * unit + lower))
-    return RawMesh(in_meters, cells, time.monotonic() - began, peak_memory())
+    return RawMesh(in_meters, cells, _WALL_LEASH * unit, time.monotonic() - began, peak_memory())
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -171,7 +172,7 @@ def _distances(edge: float, settings: TetmeshSettings) -> tuple[float, ...]:
 
 
 def _check_memory(counts: Ints, settings: TetmeshSettings) -> None:
-    limit = settings.memory_limit or MEMORY_SHARE * psutil.virtual_memory().total
+    limit = memory_allowed(settings.memory_limit)
     points = float(np.prod(2.0 * counts + 1.0))
     if _BYTES * points > limit:
         x, y, z = counts.tolist()

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from pipeline.mesh.engines.snappy import dictionaries as foam
+from pipeline.mesh.engines.snappy.engine import SnappySettings
 from pipeline.mesh.engines.snappy.layout import Layout, layout
 from pipeline.mesh.engines.snappy.scripts import JOB_SCRIPT, MESH_SCRIPT, format_job_script, format_mesh_script
 from pipeline.mesh.settings import TetmeshSettings
@@ -30,7 +31,7 @@ def write_case(domain: FluidDomain, settings: TetmeshSettings, folder: Path) -> 
     Layout
         What the case starts from.
     """
-    unit = 2.0 * float(domain.radius.mean())
+    unit, cores = domain.mean_diameter, settings.own(SnappySettings).cores
     lower, upper = np.array(domain.box.lower) / unit, np.array(domain.box.upper) / unit
     used, numbers = np.unique(domain.triangles[domain.patch == domain.patches.index(FIBERS)], return_inverse=True)
     points = domain.points[used] / unit
@@ -41,12 +42,12 @@ def write_case(domain: FluidDomain, settings: TetmeshSettings, folder: Path) -> 
         f"constant/triSurface/{foam.SURFACE}": foam.format_surface(points, numbers.reshape(-1, 3)),
         "system/blockMeshDict": foam.format_block_mesh(lower, upper, start),
         "system/snappyHexMeshDict": foam.format_snappy(start),
-        "system/decomposeParDict": format_decompose(settings.cores),
+        "system/decomposeParDict": format_decompose(cores),
         "system/controlDict": foam.format_control(),
         "system/fvSchemes": foam.format_schemes(),
         "system/fvSolution": foam.format_solution(),
-        MESH_SCRIPT: format_mesh_script(unit, settings.cores, start.counts),
-        JOB_SCRIPT: format_job_script(settings.cores),
+        MESH_SCRIPT: format_mesh_script(unit, cores, start.counts),
+        JOB_SCRIPT: format_job_script(cores),
     }.items():
         (folder / name).write_text(text, encoding="ascii")
     (folder / MESH_SCRIPT).chmod(0o755)

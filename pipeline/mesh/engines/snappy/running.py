@@ -10,7 +10,7 @@ from pathlib import Path
 import psutil
 
 from pipeline.errors import StageError
-from pipeline.mesh.engines.ftetwild.child import Limits
+from pipeline.mesh.engines.limits import Limits
 from pipeline.mesh.engines.snappy.scripts import MESH_SCRIPT
 from pipeline.openfoam.environment import programs_missing
 from pipeline.openfoam.process import running, tail
@@ -85,8 +85,8 @@ def _watch(child: "subprocess.Popen[bytes]", case: Path, limits: Limits, tell: P
         seconds = time.monotonic() - began
         if seconds > limits.seconds:
             raise StageError(
-                f"snappyHexMesh was ended after {seconds:.0f} s, the limit, while {state}; raise tetmesh.time_limit "
-                "or tetmesh.cores, or make the mesh coarser: raise tetmesh.edge"
+                f"snappyHexMesh was ended after {seconds:.0f} s, the limit, while {state}; raise "
+                "tetmesh.snappy.time_limit or tetmesh.snappy.cores, or make the mesh coarser: raise tetmesh.edge"
             )
         if peak > limits.memory:
             raise StageError(

@@ -1,0 +1,60 @@
+"""What an engine says about itself, and the one contract that all of them keep."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pydantic import BaseModel, ConfigDict
+
+if TYPE_CHECKING:
+    from pipeline.mesh.improve.finish import TetmeshMeasures
+    from pipeline.mesh.settings import TetmeshSettings
+    from pipeline.nouns.domain import FluidDomain
+    from pipeline.nouns.mesh import FaceMesh
+    from pipeline.progress import Progress
+
+
+class EngineSettings(BaseModel):
+    """Keys that one engine alone reads; an engine without any takes this as it is."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+@dataclass(frozen=True, slots=True)
+class Engine:
+    """A mesher that a case may name.
+
+    Parameters
+    ----------
+    name : str
+        Value of `tetmesh.engine`, and the name of its own table in `[tetmesh]`.
+    meaning : str
+        What it is, for the case file's reference.
+    settings : type of EngineSettings
+        Its own table.
+    mesh : callable
+        Fills the air with cells: takes the domain, the settings, who is told of progress, and the folder of the stage's
+        result (or None), where a program of its own leaves what it was told; gives the mesh and its measures, whose
+        fidelity is measured afterwards. It imports its numerics when it is called, since no case file should wait
+        for them. Raises StageError.
+    truer : str
+        What brings the walls nearer to the fibers, as the end of a message.
+    better : callable
+        Gives what to set for better cells than these settings made, as ``table.key=value``.
+    missing : callable
+        Says why it cannot run on this machine and what to do, or None where it can.
+    tries : int
+        How often it is run until walls stand on the fibers: an engine that differs each time may do better.
+    """
+
+    name: str
+    meaning: str
+    settings: type[EngineSettings]
+    mesh: Callable[["FluidDomain", "TetmeshSettings", "Progress", Path | None], "tuple[FaceMesh, TetmeshMeasures]"]
+    truer: str
+    better: Callable[["TetmeshSettings"], tuple[str, ...]]
+    missing: Callable[["TetmeshSettings"], str | None] = lambda settings: None
+    tries: int = 1

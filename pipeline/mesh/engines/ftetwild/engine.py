@@ -1,0 +1,62 @@
+"""FTetWild as an engine: a few well-placed cells whose walls keep within an envelope of the fibers' surface."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pydantic import Field
+
+from pipeline.mesh.engines.engine import Engine, EngineSettings
+from pipeline.units import Duration, PositiveRatio
+
+if TYPE_CHECKING:
+    from pipeline.mesh.improve.finish import TetmeshMeasures
+    from pipeline.mesh.settings import TetmeshSettings
+    from pipeline.nouns.domain import FluidDomain
+    from pipeline.nouns.mesh import FaceMesh
+    from pipeline.progress import Progress
+
+
+class TetwildSettings(EngineSettings):
+    """What only fTetWild reads; lengths are in mean fiber diameters."""
+
+    envelope: PositiveRatio = Field(
+        default=0.04,
+        le=0.25,
+        description="How far the mesh's boundary may stray from the fibers' surface, in mean fiber diameters.",
+    )
+    passes: int = Field(
+        default=2,
+        ge=1,
+        le=200,
+        description="Rounds of splitting, collapsing, swapping and smoothing before the edge lengths are refined.",
+    )
+    stop_energy: PositiveRatio = Field(
+        default=100.0,
+        ge=3.0,
+        description="Conformal energy of the worst tetrahedron at which rounds end (3 is ideal); "
+        "the few cells that a solver would object to are mended afterwards.",
+    )
+    time_limit: Duration = Field(default=3600.0, description="The mesher is ended after this time.")
+
+
+def _mesh(
+    domain: "FluidDomain", settings: "TetmeshSettings", tell: "Progress", folder: Path | None
+) -> "tuple[FaceMesh, TetmeshMeasures]":
+    from pipeline.mesh.engines.ftetwild.ftetwild import tetrahedralized
+    from pipeline.mesh.improve.finish import finished
+
+    unit = domain.mean_diameter
+    return finished(tetrahedralized(domain, settings, unit, tell), domain, settings, unit, tell)
+
+
+TETWILD = Engine(
+    name="tetwild",
+    meaning="fTetWild: few cells, true walls; time grows faster than cells, and it differs a little from run to run",
+    settings=TetwildSettings,
+    mesh=_mesh,
+    truer="lower tetmesh.tetwild.envelope or tetmesh.edge",
+    better=lambda settings: (f"tetmesh.tetwild.passes={2 * settings.own(TetwildSettings).passes}",),
+    tries=3,
+)

@@ -1,0 +1,54 @@
+"""OpenFOAM's snappyHexMesh as an engine: hexahedra, on as many cores and machines as MPI has."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pydantic import Field
+
+from pipeline.mesh.engines.engine import Engine, EngineSettings
+from pipeline.units import Duration
+
+if TYPE_CHECKING:
+    from pipeline.mesh.improve.finish import TetmeshMeasures
+    from pipeline.mesh.settings import TetmeshSettings
+    from pipeline.nouns.domain import FluidDomain
+    from pipeline.nouns.mesh import FaceMesh
+    from pipeline.progress import Progress
+
+CASE = "snappy"
+"""Folder of the stage's result that holds the case."""
+
+
+class SnappySettings(EngineSettings):
+    """What only snappyHexMesh reads."""
+
+    cores: int = Field(default=1, ge=1, le=4096, description="Processes that it runs in; above 1 needs MPI.")
+    time_limit: Duration = Field(default=3600.0, description="The mesher is ended after this time.")
+
+
+def _mesh(
+    domain: "FluidDomain", settings: "TetmeshSettings", tell: "Progress", folder: Path | None
+) -> "tuple[FaceMesh, TetmeshMeasures]":
+    from pipeline.mesh.engines.snappy.mesh import snapped
+
+    return snapped(domain, settings, tell, folder / CASE if folder is not None else None)
+
+
+def _missing(settings: "TetmeshSettings") -> str | None:
+    from pipeline.mesh.engines.snappy.running import missing
+
+    return missing(settings.own(SnappySettings).cores)
+
+
+SNAPPY = Engine(
+    name="snappy",
+    meaning="OpenFOAM's snappyHexMesh: hexahedra split near the fibers, on many cores and machines; OpenFOAM has to "
+    "be installed; its cubes have half of `edge` and the volume of a tetrahedron",
+    settings=SnappySettings,
+    mesh=_mesh,
+    truer="lower tetmesh.edge",
+    better=lambda settings: (f"tetmesh.edge={0.75 * settings.edge:.3g}",),
+    missing=_missing,
+)
