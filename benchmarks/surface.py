@@ -13,13 +13,13 @@ import time
 
 import numpy as np
 
+from pipeline.child_process import Limits
 from pipeline.enclosure.duct import enclose
 from pipeline.enclosure.settings import EnclosureSettings
 from pipeline.geometry.tets import volumes
 from pipeline.mat.generate import generate
 from pipeline.mat.settings import Constant, LayeredSettings, Stop
 from pipeline.mesh.engines.ftetwild.child import run_child
-from pipeline.mesh.engines.limits import Limits
 from pipeline.surface.measures import measure_surface
 from pipeline.surface.settings import SurfaceSettings
 from pipeline.surface.union import unite

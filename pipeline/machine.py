@@ -1,4 +1,4 @@
-"""What systems do differently: locks, the memory of a process and a bound on it, ending a group of processes.
+"""What systems do differently: locks, the memory of a process and a bound on it.
 
 Linux is what is tested. Elsewhere a function does what that system offers, and says what it does not.
 """
@@ -6,17 +6,14 @@ Linux is what is tested. Elsewhere a function does what that system offers, and 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import contextlib
-import ctypes
-import os
-import signal
-import subprocess
 import sys
+import weakref
 from collections.abc import Iterator
 from typing import IO, Any
 
 import psutil
 
-_PR_SET_PDEATHSIG = 1  # of prctl(2)
+_LOCKED: "weakref.WeakSet[IO[Any]]" = weakref.WeakSet()
 
 
 def lock(file: IO[Any]) -> None:
@@ -38,6 +35,12 @@ def lock(file: IO[Any]) -> None:
         import fcntl
 
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    _LOCKED.add(file)
+
+
+def held_locks() -> list[int]:
+    """Descriptors of the files that this process holds: where another process has one too, it holds as long as both."""
+    return [file.fileno() for file in _LOCKED if not file.closed]
 
 
 def peak_memory() -> int:
@@ -70,39 +73,3 @@ def memory_bounded() -> Iterator[None]:
         yield
     finally:
         resource.setrlimit(resource.RLIMIT_AS, before)
-
-
-def apart() -> dict[str, Any]:
-    """Options of `subprocess.Popen` for a program in a group of its own that `end_group` ends.
-
-    On Linux it also ends when this process is killed; elsewhere it may outlive that.
-    """
-    if sys.platform == "win32":
-        return {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}
-    return {"start_new_session": True, **({"preexec_fn": _end_with_parent} if sys.platform == "linux" else {})}
-
-
-def _end_with_parent() -> None:
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
-
-
-def end_group(program: "subprocess.Popen[bytes]", patience: float) -> None:
-    """End a program that was started `apart`, with all that it started; by force after `patience` [s]."""
-    if program.poll() is not None:
-        return
-    _signal_group(program, "SIGTERM")
-    try:
-        program.wait(patience)
-    except subprocess.TimeoutExpired:
-        _signal_group(program, "SIGKILL")
-        program.wait()
-
-
-def _signal_group(program: "subprocess.Popen[bytes]", name: str) -> None:
-    with contextlib.suppress(ProcessLookupError):
-        if sys.platform == "win32":
-            for child in psutil.Process(program.pid).children(recursive=True):
-                child.kill()
-            program.kill()
-        else:
-            os.killpg(program.pid, getattr(signal, name))

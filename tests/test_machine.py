@@ -6,7 +6,6 @@ import os
 import shutil
 import subprocess
 import sys
-import time
 from pathlib import Path
 from types import ModuleType
 
@@ -70,19 +69,6 @@ def test_memory_beyond_what_is_free_is_an_error() -> None:
     with machine.memory_bounded(), pytest.raises(MemoryError):
         bytearray(psutil.virtual_memory().total * 2)
     assert machine.peak_memory() > 2**20
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="sh")
-def test_a_group_ends_with_all_that_it_started() -> None:
-    program = subprocess.Popen(["sh", "-c", "sleep 600 & wait"], **machine.apart())
-    while not (children := psutil.Process(program.pid).children()):
-        time.sleep(0.01)
-    machine.end_group(program, 5.0)
-    assert program.poll() is not None
-    psutil.wait_procs(children, timeout=5)
-    assert not any(child.is_running() and child.status() != psutil.STATUS_ZOMBIE for child in children)
-    # a second time does no harm
-    machine.end_group(program, 5.0)
 
 
 def test_numba_gets_a_private_folder_where_nothing_else_can_be_written(

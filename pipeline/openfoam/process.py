@@ -3,47 +3,46 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import contextlib
+import re
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
-from pipeline import machine
+from pipeline import child_process
 from pipeline.errors import StageError
 from pipeline.openfoam.environment import environment
+from pipeline.scratch import scratch_folder
 
-_PATIENCE = 10.0  # seconds that a program has to end by itself
+# OpenFOAM drops blanks and quotes from a path, expands others, and then finds no case there
+_PLAIN_PATH = re.compile(r"[A-Za-z0-9_./+-]+")
 
 
 @contextlib.contextmanager
-def running(command: list[str], case: Path, log: Path) -> Iterator["subprocess.Popen[bytes]"]:
-    """Run a program in a case's folder, in a process group of its own, which ends with the block whatever happens.
+def started(command: list[str], case: Path, log: Path) -> Iterator["subprocess.Popen[bytes]"]:
+    """Run a program of OpenFOAM in a case's folder, as `pipeline.child_process.started` does.
 
     Parameters
     ----------
     command : list of str
     case : Path
+        Any path: one that OpenFOAM cannot take is given to it through a link.
     log : Path
         What the program says is appended here.
-
-    Yields
-    ------
-    subprocess.Popen
     """
-    with log.open("ab") as file:
-        child = subprocess.Popen(
-            command,
-            cwd=case,
-            env=environment(case),
-            stdout=file,
-            stderr=subprocess.STDOUT,
-            stdin=subprocess.DEVNULL,
-            # or a killed run's program would go on writing into the next run's folder
-            **machine.apart(),
-        )
-    try:
-        yield child
-    finally:
-        machine.end_group(child, _PATIENCE)
+    case = case.absolute()
+    with contextlib.ExitStack() as stack:
+        scratch = []
+        if not _PLAIN_PATH.fullmatch(str(case)):
+            scratch.append(stack.enter_context(scratch_folder("solver")))
+            link = scratch[0] / "case"
+            if not _PLAIN_PATH.fullmatch(str(link)):
+                raise StageError(
+                    f"OpenFOAM takes no path with blanks, quotes and the like, neither {case} nor the temporary folder "
+                    f"{scratch[0].parent}; choose another folder with --out, or set TMPDIR"
+                )
+            link.symlink_to(case, target_is_directory=True)
+            case = link
+        yield stack.enter_context(child_process.started(command, case, log, environment(case), scratch))
 
 
 def call(command: list[str], case: Path) -> None:
@@ -55,12 +54,11 @@ def call(command: list[str], case: Path) -> None:
         If it fails, with the end of its log.
     """
     log = case / f"log.{command[0]}"
-    with log.open("wb") as file:
-        done = subprocess.run(
-            command, cwd=case, env=environment(case), stdout=file, stderr=subprocess.STDOUT, check=False
-        )
-    if done.returncode:
-        raise StageError(f"{command[0]} failed (exit code {done.returncode}):\n{tail(log)}")
+    log.unlink(missing_ok=True)
+    with started(command, case, log) as child:
+        code = child.wait()
+    if code:
+        raise StageError(f"{command[0]} failed (exit code {code}):\n{tail(log)}")
 
 
 def tail(log: Path, lines: int = 20, size: int = 20_000) -> str:

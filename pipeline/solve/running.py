@@ -6,18 +6,18 @@ import hashlib
 import math
 import re
 import shutil
-import subprocess
 import time
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from pipeline import child_process
 from pipeline.errors import StageError
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.flow import Flow, Solution
 from pipeline.openfoam.environment import openfoam_missing
-from pipeline.openfoam.process import call, running, tail
+from pipeline.openfoam.process import call, started, tail
 from pipeline.progress import Progress, silent
 from pipeline.solve import read_back
 from pipeline.solve.settings import SolveSettings
@@ -27,7 +27,6 @@ MASS_ERROR = 1e-5
 """A pressure drop counts as settled only where as much air leaves as enters, to this share."""
 LOST_MASS = 0.5
 """A run diverges where this share of the air is lost or found between inlet and outlet."""
-_POLL = 0.3  # seconds between two looks at a run
 _SAVES = 100  # iterations between two states that a killed run continues from
 _KEY, _SECONDS, _STOP = "fibertwin.key", "fibertwin.seconds", "stop"
 
@@ -101,8 +100,7 @@ def solve(
     if settings.cores > 1:
         command = ["mpirun", "-np", str(settings.cores), program, "-parallel"]
     try:
-        with running(command, work, work / f"log.{program}") as solver:
-            settled = _watch(solver, work, flow, settings, progress, work / f"log.{program}")
+        settled = _run(command, work, flow, settings, progress)
     finally:
         seconds = before + time.monotonic() - began
         (work / _SECONDS).write_text(f"{seconds:.3f}")
@@ -159,14 +157,14 @@ def _edit(path: Path, **entries: object) -> None:
     path.write_text(text, encoding="ascii")
 
 
-def _watch(
-    solver: "subprocess.Popen[bytes]", work: Path, flow: Flow, settings: SolveSettings, progress: Progress, log: Path
-) -> bool:
-    """Look at the run until it ends; ask it to stop once the pressure drop has settled or the time is over."""
+def _run(command: list[str], work: Path, flow: Flow, settings: SolveSettings, progress: Progress) -> bool:
+    """Run the solver until the pressure drop has settled, it ends, or the time is over; tell whether it has settled."""
+    log = work / f"log.{_application(work)}"
     deadline = time.monotonic() + settings.time_limit
-    settled = False
-    while True:
-        code = solver.poll()
+    drops, settled = _pressure_drops(work, flow), False
+
+    def look() -> str:
+        nonlocal drops, settled
         drops = _pressure_drops(work, flow)
         if len(drops):
             last = change(drops[:, 1], settings.window)
@@ -175,11 +173,13 @@ def _watch(
             lost = len(drops) > settings.window and abs(_mass_error(work)) > LOST_MASS
             if lost or not math.isfinite(drops[-1, 1]):
                 raise _failure(f"diverged after {drops[-1, 0]:.0f} iterations", log)
-        if code is not None:
-            break
         if settled or time.monotonic() > deadline:
             (work / _STOP).touch()
-        time.sleep(_POLL)
+        return "solving"
+
+    with started(command, work, log) as solver:
+        child_process.watch(solver, look)
+    code = solver.returncode
     if code != 0 or not len(drops):
         at = f"after {drops[-1, 0]:.0f} iterations" if len(drops) else "before its first iteration"
         raise _failure(f"failed {at} (exit code {code})", log)

@@ -103,7 +103,7 @@ def test_a_run_killed_at_once_leaves_no_solver_behind_and_goes_on(tmp_path: Path
     while not (log.exists() and "Time = 20\n" in log.read_text()):
         assert time.monotonic() < deadline
         time.sleep(0.05)
-    solvers = [child for child in psutil.Process(victim.pid).children() if child.name() == "simpleFoam"]
+    solvers = [child for child in psutil.Process(victim.pid).children(recursive=True) if child.name() == "simpleFoam"]
     assert len(solvers) == 1
     victim.kill()
     victim.wait()

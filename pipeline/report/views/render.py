@@ -5,21 +5,22 @@ A machine without a screen is told to VTK before it looks for one, or it would c
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import contextlib
 import json
 import os
 import re
 import subprocess
 import sys
-import tempfile
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+from pipeline import child_process
 from pipeline.report.views import painter
 from pipeline.report.views.mesh_scenes import MeshSubject
 from pipeline.report.views.scenes import Subject
+from pipeline.scratch import scratch_folder
 
 _TIME_LIMIT = 600.0  # seconds; pictures of a million cells take one minute on one slow core
 
@@ -58,16 +59,22 @@ class Painting:
     def __init__(self, subject: Subject | MeshSubject, scenes: Iterable[str], kind: str = "jpg") -> None:
         self._names = tuple(scenes)
         self._kind = kind
-        self._home = tempfile.TemporaryDirectory(prefix="fibertwin-pictures-")
-        folder = Path(self._home.name)
-        order = {"scenes": self._names, "kind": kind, "kind of subject": painter.write_subject(subject, folder)}
-        (folder / painter.ORDER).write_text(json.dumps(order))
-        # -P: the working folder must not become a place to import from
-        command = [sys.executable, "-P", "-m", painter.__name__, str(folder)]
-        with (folder / "log").open("wb") as log:
-            self._child = subprocess.Popen(
-                command, cwd=folder, env=rendering_environment(), stdout=log, stderr=subprocess.STDOUT
+        with contextlib.ExitStack() as open_now:
+            self._folder = open_now.enter_context(scratch_folder("pictures"))
+            order = {
+                "scenes": self._names,
+                "kind": kind,
+                "kind of subject": painter.write_subject(subject, self._folder),
+            }
+            (self._folder / painter.ORDER).write_text(json.dumps(order))
+            # -P: the working folder must not become a place to import from
+            command = [sys.executable, "-P", "-m", painter.__name__, str(self._folder)]
+            self._child = open_now.enter_context(
+                child_process.started(
+                    command, self._folder, self._folder / "log", rendering_environment(), [self._folder]
+                )
             )
+            self._open = open_now.pop_all()
 
     def __enter__(self) -> Self:
         return self
@@ -75,14 +82,11 @@ class Painting:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self._child.poll() is None:
-            self._child.kill()
-        self._child.wait()
-        self._home.cleanup()
+        self._open.__exit__(kind, error, trace)
 
     def finished(self) -> Pictures:
         """Wait for the pictures."""
-        folder = Path(self._home.name)
+        folder = self._folder
         try:
             code = self._child.wait(_TIME_LIMIT)
         except subprocess.TimeoutExpired:

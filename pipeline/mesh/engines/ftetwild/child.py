@@ -4,27 +4,31 @@
 
 import json
 import re
-import subprocess
 import sys
-import tempfile
-import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import psutil
 
+from pipeline import child_process
+from pipeline.child_process import Advice, Limits
 from pipeline.errors import StageError
 from pipeline.mesh.engines.ftetwild import worker
-from pipeline.mesh.engines.limits import Limits
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.progress import Progress
+from pipeline.scratch import scratch_folder
 
 # What fTetWild's log says at the start of each pass, and at the end of each round that refines by the size field.
 _ROUND = re.compile(rb"/ pass (\d+) /|^/{9}(\d+) ", re.MULTILINE)
-_POLL = 0.2  # seconds between two looks at the child
 _TAIL = 5  # lines of the child's log that an error quotes
+
+
+_ADVICE = Advice(
+    "fTetWild",
+    "raise tetmesh.tetwild.time_limit, or make the mesh coarser: raise tetmesh.edge or lower tetmesh.tetwild.passes",
+    "raise tetmesh.memory_limit, or make the mesh coarser: raise tetmesh.edge",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,8 +63,7 @@ def run_child(
     StageError
         If the child crashes, exceeds a limit, or gives no tetrahedron.
     """
-    with tempfile.TemporaryDirectory(prefix="fibertwin-mesh-") as name:
-        folder = Path(name)
+    with scratch_folder("mesh") as folder:
         np.savez(
             folder / worker.INPUT,
             points=points,
@@ -68,65 +71,46 @@ def run_child(
             options=np.array(json.dumps(options)),
             **background,
         )
-        began = time.monotonic()
-        with (folder / "log").open("wb") as log:
-            # -P: the working folder must not become a place to import from
-            command = [sys.executable, "-P", "-m", worker.__name__, str(folder)]
-            child = subprocess.Popen(command, cwd=folder, stdout=log, stderr=subprocess.STDOUT)
-        try:
-            peak = _watch(child, folder / "log", int(options["num_opt_iter"]), limits, tell)
-        finally:
-            if child.poll() is None:
-                child.kill()
-            child.wait()
-        seconds = time.monotonic() - began
+        # -P: the working folder must not become a place to import from
+        command = [sys.executable, "-P", "-m", worker.__name__, str(folder)]
+        log = folder / "log"
+        with child_process.started(command, folder, log, scratch=[folder]) as child:
+            look = _Look(log, int(options["num_opt_iter"]), tell)
+            used = child_process.watch(child, look, limits, _ADVICE)
         if child.returncode != 0 or not (folder / worker.OUTPUT).exists():
-            raise StageError(_crash(child.returncode, folder / "log", seconds))
+            raise StageError(_crash(child.returncode, log, used.seconds))
         with np.load(folder / worker.OUTPUT, allow_pickle=False) as result:
             mesh_points, tets = result["points"].astype(np.float64), result["tets"].astype(np.int64)
     if len(tets) == 0:
         raise StageError(
             f"fTetWild gave no tetrahedron from {len(triangles)} triangles; lower tetmesh.tetwild.envelope"
         )
-    return Meshed(mesh_points, tets, seconds, peak)
+    return Meshed(mesh_points, tets, used.seconds, used.peak_memory)
 
 
-def _watch(child: "subprocess.Popen[bytes]", log: Path, passes: int, limits: Limits, tell: Progress) -> int:
-    process = psutil.Process(child.pid)
-    began, peak, read = time.monotonic(), 0, 0
-    state, share = "inserting the surface", 0.0
-    while child.poll() is None:
-        time.sleep(_POLL)
-        try:
-            peak = max(peak, process.memory_info().rss)
-        except psutil.Error:
-            continue
-        seconds = time.monotonic() - began
-        if seconds > limits.seconds:
-            raise StageError(
-                f"fTetWild was ended after {seconds:.0f} s, the limit, while {state}; raise "
-                "tetmesh.tetwild.time_limit, or make the mesh coarser: raise tetmesh.edge or lower "
-                "tetmesh.tetwild.passes"
-            )
-        if peak > limits.memory:
-            raise StageError(
-                f"fTetWild was ended at {peak / 2**30:.1f} GiB of memory, over the limit of "
-                f"{limits.memory / 2**30:.1f} GiB; "
-                "raise tetmesh.memory_limit, or make the mesh coarser: raise tetmesh.edge"
-            )
-        with log.open("rb") as file:
-            file.seek(read)
+class _Look:
+    """Reads in the mesher's log what it is doing, and tells it."""
+
+    def __init__(self, log: Path, passes: int, tell: Progress) -> None:
+        self._log, self._passes, self._tell = log, passes, tell
+        self._read, self._doing, self._share = 0, "inserting the surface", 0.0
+
+    def __call__(self) -> str:
+        with self._log.open("rb") as file:
+            file.seek(self._read)
             news = file.read()
-            read += len(news)
+        self._read += len(news)
         found = _ROUND.findall(news)
         if found:
             before, after = found[-1]
-            state = f"in pass {int(before) + 1} of {passes}" if before else f"refining, round {int(after) + 2}"
+            self._doing = (
+                f"in pass {int(before) + 1} of {self._passes}" if before else f"refining, round {int(after) + 2}"
+            )
             # the passes take about a third of the time, the insertion before them and the refining after them the rest
-            share = 0.2 + (0.3 * int(before) / passes if before else 0.3 + min(0.4, 0.2 * int(after)))
+            self._share = 0.2 + (0.3 * int(before) / self._passes if before else 0.3 + min(0.4, 0.2 * int(after)))
         if news:
-            tell(f"fTetWild, {state}", share)
-    return peak
+            self._tell(f"fTetWild, {self._doing}", self._share)
+        return self._doing
 
 
 def _crash(code: int, log: Path, seconds: float) -> str:

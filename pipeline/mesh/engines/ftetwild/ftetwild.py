@@ -4,6 +4,7 @@
 
 import numpy as np
 
+from pipeline.child_process import Limits
 from pipeline.errors import StageError
 from pipeline.geometry.box import Box
 from pipeline.geometry.tets import boundary
@@ -12,7 +13,7 @@ from pipeline.mesh.boundary import assign, flattened, planes
 from pipeline.mesh.engines.ftetwild.child import Meshed, run_child
 from pipeline.mesh.engines.ftetwild.engine import TetwildSettings
 from pipeline.mesh.engines.ftetwild.size_field import size_field
-from pipeline.mesh.engines.limits import Limits, memory_allowed
+from pipeline.mesh.engines.limits import memory_allowed
 from pipeline.mesh.engines.raw import RawMesh
 from pipeline.mesh.improve.finish import used_points
 from pipeline.mesh.settings import TetmeshSettings

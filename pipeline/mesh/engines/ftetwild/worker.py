@@ -7,7 +7,6 @@ A crash in its C++ code ends this process and not the user's, and it leaves file
 
 import ctypes
 import json
-import signal
 import sys
 from pathlib import Path
 
@@ -19,7 +18,6 @@ INPUT, OUTPUT = "input.npz", "output.npz"
 def main(folder: Path) -> None:
     """Mesh what ``input.npz`` in the folder holds, and leave ``output.npz`` beside it."""
     if sys.platform == "linux":
-        _end_with_parent()
         _flush_each_line()
     import pytetwild
 
@@ -31,12 +29,6 @@ def main(folder: Path) -> None:
     side = folder / f"side-{OUTPUT}"
     np.savez(side, points=mesh_points, tets=tets)
     side.rename(folder / OUTPUT)
-
-
-def _end_with_parent() -> None:
-    """Ask the system to kill this process when its parent ends, or a killed run would leave a mesher behind."""
-    set_parent_death_signal = 1  # PR_SET_PDEATHSIG of prctl(2)
-    ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGKILL)
 
 
 def _flush_each_line() -> None:

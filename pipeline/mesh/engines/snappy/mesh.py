@@ -2,19 +2,20 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import contextlib
 import shutil
-import tempfile
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from pipeline.child_process import Limits
 from pipeline.errors import StageError
 from pipeline.geometry.box import Box
 from pipeline.geometry.polyhedra import polygons
 from pipeline.geometry.triangles import area_vectors
 from pipeline.mesh.boundary import planes
-from pipeline.mesh.engines.limits import Limits, memory_allowed
+from pipeline.mesh.engines.limits import memory_allowed
 from pipeline.mesh.engines.snappy.blind import without_blind_cells
 from pipeline.mesh.engines.snappy.case import write_case
 from pipeline.mesh.engines.snappy.engine import SnappySettings
@@ -28,6 +29,7 @@ from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.patches import FIBERS, PATCHES
 from pipeline.openfoam.read import read_openfoam
 from pipeline.progress import Progress, silent
+from pipeline.scratch import scratch_folder
 
 _PLANE_ERROR = 0.02  # of a plane's area: a section of a fiber is a polygon of few corners
 
@@ -54,13 +56,12 @@ def snapped(
     StageError
         If OpenFOAM is missing or fails, or the mesh does not keep the duct's planes.
     """
-    with tempfile.TemporaryDirectory(prefix="fibertwin-snappy-") as name:
-        case = Path(name) if folder is None else folder
+    with scratch_folder("snappy") if folder is None else contextlib.nullcontext(folder) as case:
         tell("snappyHexMesh, writing its case", 0.0)
         write_case(domain, settings, case)
         own = settings.own(SnappySettings)
         limits = Limits(own.time_limit, memory_allowed(settings.memory_limit))
-        seconds, peak = run_case(case, own.cores, limits, tell)
+        used = run_case(case, own.cores, limits, tell)
         tell("reading the mesh", 0.95)
         mesh = _on_planes(read_openfoam(case), domain.box)
         # the mesh is the stage's own result
@@ -80,8 +81,8 @@ def snapped(
         raw_volume_error=_volume_error(raw, domain),
         filled_volume=filled,
         faulty_cells=faulty,
-        mesher_seconds=seconds,
-        mesher_peak_memory=peak,
+        mesher_seconds=used.seconds,
+        mesher_peak_memory=used.peak_memory,
     )
     return mesh, measures
 

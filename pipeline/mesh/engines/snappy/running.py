@@ -3,17 +3,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import re
-import subprocess
-import time
 from pathlib import Path
 
-import psutil
-
+from pipeline import child_process
+from pipeline.child_process import Advice, Limits, Used
 from pipeline.errors import StageError
-from pipeline.mesh.engines.limits import Limits
 from pipeline.mesh.engines.snappy.scripts import MESH_SCRIPT
 from pipeline.openfoam.environment import programs_missing
-from pipeline.openfoam.process import running, tail
+from pipeline.openfoam.process import started, tail
 from pipeline.progress import Progress
 
 PROGRAMS = ("blockMesh", "snappyHexMesh", "renumberMesh", "transformPoints", "checkMesh")
@@ -21,9 +18,13 @@ PROGRAMS = ("blockMesh", "snappyHexMesh", "renumberMesh", "transformPoints", "ch
 PARALLEL = ("decomposePar", "mpirun", "reconstructParMesh")
 """What it runs besides on more than one."""
 
-_POLL = 0.2  # seconds between two looks at the child
 _TAIL = 8  # lines of a log that an error quotes
 _LOG = "log.snappyHexMesh"
+_ADVICE = Advice(
+    "snappyHexMesh",
+    "raise tetmesh.snappy.time_limit or tetmesh.snappy.cores, or make the mesh coarser: raise tetmesh.edge",
+    "raise tetmesh.memory_limit, or make the mesh coarser: raise tetmesh.edge",
+)
 # what snappyHexMesh's log says as it goes on, what that means, and the share of the time that is over by then
 _STEPS = (
     (rb"Surface refinement iteration", "halving cells at the fibers", 0.05),
@@ -40,7 +41,7 @@ def missing(cores: int) -> str | None:
     return f'tetmesh.engine = "snappy" cannot run: {lacking}' if lacking else None
 
 
-def run_case(case: Path, cores: int, limits: Limits, tell: Progress) -> tuple[float, int]:
+def run_case(case: Path, cores: int, limits: Limits, tell: Progress) -> Used:
     """Mesh a case that `write_case` wrote.
 
     Parameters
@@ -53,9 +54,7 @@ def run_case(case: Path, cores: int, limits: Limits, tell: Progress) -> tuple[fl
 
     Returns
     -------
-    seconds : float [s]
-    peak_memory : int [byte]
-        Of all processes together.
+    Used
 
     Raises
     ------
@@ -67,54 +66,25 @@ def run_case(case: Path, cores: int, limits: Limits, tell: Progress) -> tuple[fl
         raise StageError(lacking)
     log = case / f"{MESH_SCRIPT}.log"
     log.unlink(missing_ok=True)
-    began = time.monotonic()
-    with running([f"./{MESH_SCRIPT}", str(cores)], case, log) as child:
-        peak = _watch(child, case, limits, tell)
-    seconds = time.monotonic() - began
+    with started([f"./{MESH_SCRIPT}", str(cores)], case, log) as child:
+        used = child_process.watch(child, _Look(case, tell), limits, _ADVICE)
     if child.returncode != 0:
-        raise StageError(_failure(case, child.returncode, seconds))
-    return seconds, peak
+        raise StageError(_failure(case, child.returncode, used.seconds))
+    return used
 
 
-def _watch(child: "subprocess.Popen[bytes]", case: Path, limits: Limits, tell: Progress) -> int:
-    began, peak = time.monotonic(), 0
-    state, told = "cutting the duct into blocks", ""
-    while child.poll() is None:
-        time.sleep(_POLL)
-        peak = max(peak, _memory(child.pid))
-        seconds = time.monotonic() - began
-        if seconds > limits.seconds:
-            raise StageError(
-                f"snappyHexMesh was ended after {seconds:.0f} s, the limit, while {state}; raise "
-                "tetmesh.snappy.time_limit or tetmesh.snappy.cores, or make the mesh coarser: raise tetmesh.edge"
-            )
-        if peak > limits.memory:
-            raise StageError(
-                f"snappyHexMesh was ended at {peak / 2**30:.1f} GiB of memory, over the limit of "
-                f"{limits.memory / 2**30:.1f} GiB, while {state}; raise tetmesh.memory_limit, "
-                "or make the mesh coarser: raise tetmesh.edge"
-            )
-        state, share = _state(case)
-        if state != told:
-            tell(f"snappyHexMesh, {state}", share)
-            told = state
-    return peak
+class _Look:
+    """Reads in the logs what is being done, and tells it where it is something else than before."""
 
+    def __init__(self, case: Path, tell: Progress) -> None:
+        self._case, self._tell, self._told = case, tell, ""
 
-def _memory(pid: int) -> int:
-    """Memory of a process and all that it started [byte]."""
-    try:
-        first = psutil.Process(pid)
-        family = [first, *first.children(recursive=True)]
-    except psutil.Error:
-        return 0
-    total = 0
-    for process in family:
-        try:
-            total += process.memory_info().rss
-        except psutil.Error:
-            continue
-    return total
+    def __call__(self) -> str:
+        doing, share = _state(self._case)
+        if doing != self._told:
+            self._tell(f"snappyHexMesh, {doing}", share)
+            self._told = doing
+        return doing
 
 
 def _state(case: Path) -> tuple[str, float]:
