@@ -16,9 +16,10 @@ from pipeline.geometry.triangles import Floats
 
 
 @compiled
-def _to_piece(
+def to_piece(
     x: float, y: float, z: float, start: Floats, end: Floats, radius: float, flat0: bool, flat1: bool
 ) -> float:
+    """Give the signed distance from a place to a piece's surface, negative inside; a flat end cuts the cylinder."""
     ux, uy, uz = end[0] - start[0], end[1] - start[1], end[2] - start[2]
     length = math.sqrt(ux * ux + uy * uy + uz * uz)
     ux, uy, uz = ux / length, uy / length, uz / length
@@ -75,7 +76,7 @@ def _lattice_distance(
                 y = origin[1] + j * step[1]
                 for k in range(low[2], high[2] + 1):
                     z = origin[2] + k * step[2]
-                    found = _to_piece(x, y, z, start[piece], end[piece], radius[piece], flat[piece, 0], flat[piece, 1])
+                    found = to_piece(x, y, z, start[piece], end[piece], radius[piece], flat[piece, 0], flat[piece, 1])
                     if found < distance[i, j, k]:
                         distance[i, j, k] = found
                         nearest[i, j, k] = piece
@@ -101,7 +102,7 @@ def _place(x: float, y: float, z: float, field: _Field) -> tuple[float, int]:
                 if piece < 0 or piece == last:
                     continue
                 last = piece
-                found = _to_piece(x, y, z, start[piece], end[piece], radius[piece], flat[piece, 0], flat[piece, 1])
+                found = to_piece(x, y, z, start[piece], end[piece], radius[piece], flat[piece, 0], flat[piece, 1])
                 if found < best:
                     best, which = found, piece
     return best, which
@@ -222,7 +223,7 @@ class FiberDistance:
         reach : float
             Distances beyond it are not told apart.
         """
-        start, end, radius, flat, source = _short(start, end, radius, flat)
+        start, end, radius, flat, source = short_pieces(start, end, radius, flat)
         step = (upper - lower) / np.array(counts)
         shape = (counts[0] + 1, counts[1] + 1, counts[2] + 1)
         distance, nearest = _lattice_distance(start, end, radius, flat, lower, step, shape, reach)
@@ -271,9 +272,18 @@ class FiberDistance:
 _LENGTH = 4.0  # of a short piece in radii: a long one would be looked for all over the box around it
 
 
-def _short(
+def short_pieces(
     start: Floats, end: Floats, radius: Floats, flat: npt.NDArray[np.bool_]
 ) -> tuple[Floats, Floats, Floats, npt.NDArray[np.bool_], npt.NDArray[np.int64]]:
+    """Cut pieces into ones no longer than four radii, which a grid finds quickly.
+
+    Returns
+    -------
+    start, end, radius, flat : arrays
+        Of the short pieces.
+    source : (n,) int array
+        The piece that each is a part of.
+    """
     parts = np.maximum(1, np.ceil(np.linalg.norm(end - start, axis=1) / (_LENGTH * radius))).astype(np.int64)
     piece = np.repeat(np.arange(len(start)), parts)
     number = np.arange(len(piece)) - np.repeat(np.cumsum(parts) - parts, parts)

@@ -1,0 +1,315 @@
+"""Send particles of every size through a solved flow, and tell what was caught in the words of filters."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from pipeline.analytics.formulas import classes
+from pipeline.analytics.formulas.merit import figure_of_merit
+from pipeline.analytics.formulas.penetrating import most_penetrating
+from pipeline.analytics.models.prediction import depth_of, efficiency_over
+from pipeline.analytics.models.single_fiber import PRESETS, penetration, preset
+from pipeline.analytics.settings import FilterSettings, FlowSettings
+from pipeline.capture.cells import Cells
+from pipeline.capture.contact import fiber_grid, touching_fibers
+from pipeline.capture.counting import Filter, counted
+from pipeline.capture.first_row import first_row
+from pipeline.capture.intervals import share_interval
+from pipeline.capture.particles import motion_of
+from pipeline.capture.settings import PARTICLES, CaptureSettings, Mechanism
+from pipeline.capture.size_curve import most_penetrating_size
+from pipeline.capture.starts import fastest_inflow
+from pipeline.capture.trajectories import CAPTURED, PASSED, TIMED_OUT, Duct, Fates, Pace
+from pipeline.geometry.box import Box
+from pipeline.nouns.arrays import Floats, Ints
+from pipeline.nouns.capture import Capture, DepthProfile, MostPenetratingSize
+from pipeline.nouns.fibers import Mat, Pieces
+from pipeline.progress import Progress, silent
+
+_TRANSITS = 100.0  # a particle is given up after so many times that the air takes through the duct
+_STEPS = 1_000_000
+_SLICES = 20
+_ALONE = 5  # of a mechanism alone, one particle for so many of all together
+_SIEVED = 0.02  # of the particle's diameter: two fibers within that of its surface hold it together
+
+
+class Caught(NamedTuple):
+    """Where particles stick, one row each.
+
+    Parameters
+    ----------
+    place : (n, 3) array [m]
+        Of their centers.
+    particle_diameter : (n,) array [m]
+    fiber : (n,) int array
+    time : (n,) array [s]
+        Since they entered.
+    """
+
+    place: Floats
+    particle_diameter: Floats
+    fiber: Ints
+    time: Floats
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Medium:
+    """The filter that particles are sent through.
+
+    Parameters
+    ----------
+    mat : Mat
+    pieces : Pieces
+        The true fibers, with their periodic images.
+    box : Box [m]
+        The duct.
+    wraps : bool
+        Whether its sides are cyclic.
+    cells : Cells
+        The solved flow.
+    pressure_drop : float [Pa]
+    solver : str
+        Who solved it.
+    model : FilterSettings
+        The filter as the single-fiber model sees it.
+    """
+
+    mat: Mat
+    pieces: Pieces
+    box: Box
+    wraps: bool
+    cells: Cells
+    pressure_drop: float
+    solver: str
+    model: FilterSettings
+
+
+def capture(
+    medium: Medium, settings: CaptureSettings, air: FlowSettings, tell: Progress = silent, kept: Path | None = None
+) -> tuple[Capture, Caught]:
+    """Count what a filter catches of particles of each size.
+
+    Parameters
+    ----------
+    medium : Medium
+    settings : CaptureSettings
+    air : FlowSettings
+    tell : Progress
+    kept : Path, optional
+        Folder for finished batches, from which a killed run goes on.
+
+    Returns
+    -------
+    Capture
+    Caught
+        In the order of sizes and particles.
+    """
+    sizes = [_size(number, medium, settings, air, tell, kept) for number in range(len(settings.diameters()))]
+    return _summary(sizes, medium, settings, air), _where(sizes, medium)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Size:
+    diameter: float
+    fates: Fates
+    fiber: Ints  # that caught each particle, -1 where none did
+    sieved: int
+    alone: dict[Mechanism, float]
+
+
+def _size(
+    number: int, medium: Medium, settings: CaptureSettings, air: FlowSettings, tell: Progress, kept: Path | None
+) -> _Size:
+    diameters = settings.diameters()
+    diameter = diameters[number]
+    filter, of_piece = _filter(medium, diameter)
+    at = f"capture: {diameter * 1e9:.4g} nm, size {number + 1} of {len(diameters)}"
+    count = settings.particles or (None if settings.half_width else PARTICLES)
+    fates = _follow(filter, diameter, settings.mechanisms, number, count, medium, settings, air, tell, at, kept)
+    caught = fates.outcome == CAPTURED
+    fiber = np.where(caught, of_piece[fates.piece], -1)
+    touching = diameter * (0.5 + _SIEVED)
+    sieved = int((touching_fibers(fates.place[caught], filter.grid, of_piece, touching) > 1).sum())
+    alone = {}
+    for mechanism in settings.mechanisms:
+        if settings.mechanisms == (mechanism,):
+            alone[mechanism] = float(caught.mean())
+            continue
+        fewer = -(-len(fates.outcome) // _ALONE)
+        name = f"{at}, {mechanism} alone"
+        some = _follow(filter, diameter, (mechanism,), number, fewer, medium, settings, air, tell, name, kept)
+        alone[mechanism] = float((some.outcome == CAPTURED).mean())
+    return _Size(diameter, fates, fiber, sieved, alone)
+
+
+def _filter(medium: Medium, diameter: float) -> tuple[Filter, Ints]:
+    pieces, radius = medium.pieces, medium.mat.radius[medium.pieces.fiber]
+    lower, upper = np.array(medium.box.lower), np.array(medium.box.upper)
+    shifts = [np.zeros(3)]
+    if medium.wraps:
+        # the particle may reach what stands behind the opposite side
+        shifts += [np.array([i, j, 0.0]) * (upper - lower) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
+    copies = len(shifts)
+    grid = fiber_grid(
+        np.concatenate([pieces.start + shift for shift in shifts]),
+        np.concatenate([pieces.end + shift for shift in shifts]),
+        np.tile(radius, copies),
+        np.tile(pieces.flat, (copies, 1)),
+        lower,
+        upper,
+        0.5 * diameter * (1.0 + 2.0 * _SIEVED) + 2.0 * float(medium.mat.radius.mean()),
+    )
+    (x0, y0, inlet), (x1, y1, outlet) = medium.box.lower, medium.box.upper
+    duct = Duct(x0, x1, y0, y1, inlet, outlet, medium.wraps)
+    return Filter(duct, medium.cells, grid, fastest_inflow(duct, medium.cells)), np.tile(pieces.fiber, copies)[
+        grid.source
+    ]
+
+
+def _follow(
+    filter: Filter, diameter: float, mechanisms: tuple[Mechanism, ...], number: int, count: int | None, medium: Medium,
+    settings: CaptureSettings, air: FlowSettings, tell: Progress, at: str, kept: Path | None,
+) -> Fates:  # fmt: skip
+    model = preset(air.preset)
+    motion = motion_of(
+        diameter, settings.density or air.particle_density, air.flow(), model, mechanisms,
+        settings.gravity or model.gravity,
+    )  # fmt: skip
+    crossing = medium.box.size[2] / air.face_velocity
+    pace = pace_of(float(medium.mat.radius.min()), motion.diffusivity > 0.0, _TRANSITS * crossing)
+    place = None
+    if kept is not None:
+        place = kept / "-".join(mechanisms)
+        place.mkdir(parents=True, exist_ok=True)
+    fates = None
+    for fates in counted(filter, motion, pace, settings.seed, number, count, settings.half_width, place):
+        trials, caught = len(fates.outcome), int((fates.outcome == CAPTURED).sum())
+        low, high = share_interval(caught, trials)
+        tell(
+            f"{at}: {trials} particles, efficiency {100 * caught / trials:.3g} % ({100 * low:.3g} to {100 * high:.3g})",
+            trials / count if count else min((settings.half_width or 1.0) / (0.5 * (high - low)), 1.0) ** 2,
+        )
+    assert fates is not None  # there is at least one particle
+    return fates
+
+
+def pace_of(radius: float, diffuses: bool, time: float) -> Pace:
+    """Choose the steps: what docs/verification.md shows to be fine enough.
+
+    Parameters
+    ----------
+    radius : float [m]
+        Of the thinnest fiber.
+    diffuses : bool
+        Whether Brownian motion moves the particles; without it steps beside a fiber are shorter, because no bridge
+        tells what was missed.
+    time : float [s]
+        After which a particle is given up.
+    """
+    return Pace(0.25, 0.5, (0.1 if diffuses else 0.05) * radius, True, time, _STEPS)
+
+
+def _summary(sizes: list[_Size], medium: Medium, settings: CaptureSettings, air: FlowSettings) -> Capture:
+    diameter = np.array([size.diameter for size in sizes])
+    outcomes = {
+        kind: np.array([int((size.fates.outcome == kind).sum()) for size in sizes])
+        for kind in (PASSED, CAPTURED, TIMED_OUT)
+    }
+    caught, lost, passed = outcomes[CAPTURED], outcomes[TIMED_OUT], outcomes[PASSED]
+    released = np.array([len(size.fates.outcome) for size in sizes])
+    efficiency = caught / released
+    bounds = [share_interval(*map(int, counts)) for counts in zip(caught, released, lost, strict=True)]
+    air = air.model_copy(update={"particle_density": settings.density or air.particle_density})
+    # a size that nothing passed has no depth, only a least one
+    depth = [-np.log1p(-share) if share < 1.0 else None for share in efficiency]
+    per_depth = float(depth_of(medium.model, 1.0))
+    flow = most_penetrating_size(diameter, caught, released, settings.seed)
+    worst = 1.0 - min(low for low, _ in bounds)
+    groups = {name: classes.particulate_efficiency(diameter, efficiency, name) for name in classes.ISO_16890}
+    return Capture(
+        particle_diameter=tuple(diameter.tolist()),
+        efficiency=tuple(efficiency.tolist()),
+        low=tuple(low for low, _ in bounds),
+        high=tuple(high for _, high in bounds),
+        penetration=tuple((1.0 - efficiency).tolist()),
+        released=tuple(released.tolist()),
+        captured=tuple(caught.tolist()),
+        passed=tuple(passed.tolist()),
+        timed_out=tuple(lost.tolist()),
+        sieved=tuple(size.sieved for size in sizes),
+        fiber_efficiency=tuple(None if each is None else float(each) / per_depth for each in depth),
+        single_fiber=tuple(efficiency_over(medium.model, air, diameter)["total"].tolist()),
+        by_mechanism={name: tuple(size.alone[name] for size in sizes) for name in settings.mechanisms},
+        first_row=_first_row(sizes, medium, released),
+        concentration=(None,) * len(sizes),
+        residence_time=tuple(_mean(size.fates.time[size.fates.outcome == PASSED]) for size in sizes),
+        figure_of_merit=tuple(
+            None if each is None else float(figure_of_merit(each, medium.pressure_drop)) for each in depth
+        ),
+        pressure_drop=medium.pressure_drop,
+        mechanisms=settings.mechanisms,
+        density=air.particle_density,
+        most_penetrating={"cfd": flow, "model": _model_size(medium.model, air)},
+        en_1822=classes.en_1822_class(worst) if flow.inside else None,
+        iso_29463=classes.iso_29463_class(worst) if flow.inside else None,
+        iso_16890=groups,
+        iso_16890_group=classes.iso_16890_group(groups),
+        depth=_depth_profile(sizes, medium),
+        seed=settings.seed,
+        flow_solver=medium.solver,
+    )
+
+
+def _mean(values: Floats) -> float | None:
+    return float(values.mean()) if len(values) else None
+
+
+def _first_row(sizes: list[_Size], medium: Medium, released: Ints) -> tuple[float, ...] | None:
+    found = first_row(medium.mat)
+    if found is None:
+        return None
+    fibers, area = found
+    share = medium.mat.slab.face_area / area
+    return tuple(
+        float(fibers[size.fiber[size.fiber >= 0]].sum() / count * share)
+        for size, count in zip(sizes, released, strict=True)
+    )
+
+
+def _model_size(model: FilterSettings, air: FlowSettings) -> MostPenetratingSize:
+    found = {
+        name: most_penetrating(each, air.flow(), model.solidity, model.fiber_diameter, air.particle_density)
+        for name, each in PRESETS.items()
+    }
+    own = found[air.preset]
+    others = [each.diameter for each in found.values() if each.inside] or [own.diameter]
+    return MostPenetratingSize(
+        diameter=own.diameter,
+        low=min(others),
+        high=max(others),
+        penetration=float(penetration(depth_of(model, own.single_fiber))),
+        inside=own.inside,
+    )
+
+
+def _depth_profile(sizes: list[_Size], medium: Medium) -> DepthProfile:
+    edges = np.linspace(medium.mat.slab.lower[2], medium.mat.slab.upper[2], _SLICES + 1)
+    heights = [size.fates.place[size.fates.outcome == CAPTURED, 2] for size in sizes]
+    counts = [np.histogram(np.clip(z, edges[0], edges[-1]), edges)[0] for z in heights]
+    return DepthProfile(tuple(edges.tolist()), tuple(tuple(count.tolist()) for count in counts))
+
+
+def _where(sizes: list[_Size], medium: Medium) -> Caught:
+    rows = [size.fates.outcome == CAPTURED for size in sizes]
+    return Caught(
+        place=np.concatenate([size.fates.place[row] for size, row in zip(sizes, rows, strict=True)]),
+        particle_diameter=np.concatenate(
+            [np.full(int(row.sum()), size.diameter) for size, row in zip(sizes, rows, strict=True)]
+        ),
+        fiber=np.concatenate([size.fiber[row] for size, row in zip(sizes, rows, strict=True)]),
+        time=np.concatenate([size.fates.time[row] for size, row in zip(sizes, rows, strict=True)]),
+    )
