@@ -16,6 +16,8 @@ from pathlib import Path
 from pipeline.case import Case, read_case
 from pipeline.cli.bundled import found
 from pipeline.line.run import Run, run
+from pipeline.nouns.flow import Solution
+from pipeline.nouns.quality import QualityReport
 from validation.ladder import climb, rung_case
 
 RUNS = {
@@ -72,10 +74,10 @@ def main(folder: Path, what: str) -> None:
         if not (this.folder / "solve").exists():
             print(f"| {engine} | {edge:g} | failed, see {spec.with_suffix('.log').name} | | | | | |", flush=True)
             continue
-        result = spec.with_suffix(".error").read_text() if array else f"{this.solution.pressure_drop:.3f} Pa"
+        result = spec.with_suffix(".error").read_text() if array else f"{this.read(Solution).pressure_drop:.3f} Pa"
         print(
-            f"| {engine} | {edge:g} | {this.quality.cells:,} | {meshed:.1f} s | {solved:.1f} s | "
-            f"{meshed + solved:.1f} s | {this.solution.iterations} | {result} |",
+            f"| {engine} | {edge:g} | {this.read(QualityReport).cells:,} | {meshed:.1f} s | {solved:.1f} s | "
+            f"{meshed + solved:.1f} s | {this.read(Solution).iterations} | {result} |",
             flush=True,
         )
 

@@ -13,6 +13,8 @@ from pathlib import Path
 from pipeline.case import read_case
 from pipeline.cli.bundled import found
 from pipeline.line.run import Run
+from pipeline.nouns.fibers import Mat
+from pipeline.nouns.mesh_measures import TetmeshMeasures
 
 SIDES = (12.5, 25.0, 50.0, 100.0)
 
@@ -37,7 +39,12 @@ def measured(folder: Path, side: float) -> tuple[int, int, float, float]:
     if status:
         raise SystemExit(f"the mat of {side:g} um failed")
     run = Run(read_case(found(Path("figure10"))), place)
-    return run.mat.fibers, run.mesh_measures.cells, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024.0
+    return (
+        run.read(Mat).fibers,
+        run.read(TetmeshMeasures).cells,
+        usage.ru_utime + usage.ru_stime,
+        usage.ru_maxrss * 1024.0,
+    )
 
 
 def main(folder: Path, sides: tuple[float, ...]) -> None:

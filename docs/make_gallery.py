@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from pipeline.case import Case, validate
 from pipeline.geometry.box import Box
-from pipeline.line.run import mat_predictor
 from pipeline.mat.generate import generate
+from pipeline.mat.make import mat_predictor
 from pipeline.mat.measures import measure
 from pipeline.nouns.fibers import Mat
 from pipeline.pictures.panels import duct_figure, mat_figure, write_png

@@ -12,6 +12,7 @@ from pathlib import Path
 from pipeline.analytics.tables.plots import save_figure
 from pipeline.case import read_case
 from pipeline.line.run import Run, run
+from pipeline.nouns.flow import Solution
 from pipeline.pictures.flow import read_flow, slice_figure, streamline_figure
 from pipeline.pictures.panels import write_png
 from validation import filters, tables
@@ -59,7 +60,7 @@ def solve_filter(name: str, folder: Path) -> None:
     this = Run(case, folder)
     write_records(RECORDS / f"{name}.csv", filters.pressure_drops(this))
     flow = read_flow(folder / "solve" / "openfoam", case.flow.flow().density)
-    title = f"cases/{name}.toml, {this.solution.pressure_drop:.3g} Pa"
+    title = f"cases/{name}.toml, {this.read(Solution).pressure_drop:.3g} Pa"
     write_png(slice_figure(flow, title), GALLERY / f"flow_{name}_slice.png")
     write_png(streamline_figure(flow, title), GALLERY / f"flow_{name}_streamlines.png")
 

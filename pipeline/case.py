@@ -6,19 +6,13 @@ import difflib
 import tomllib
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 
-from pipeline.analytics.settings import FlowSettings
-from pipeline.enclosure.settings import EnclosureSettings
 from pipeline.errors import CaseError
-from pipeline.export.settings import ExportSettings
-from pipeline.mat.settings import STOPS, FileSettings, MatSettings
-from pipeline.mesh.settings import TetmeshSettings
-from pipeline.quality.settings import QualitySettings
-from pipeline.solve.settings import SolveSettings
-from pipeline.surface.settings import SurfaceSettings
+from pipeline.line.stages import LINE, SHARED
+from pipeline.mat.settings import STOPS, FileSettings
 from pipeline.units import FROM_FILE
 
 LARGEST_FILE = 100_000
@@ -31,19 +25,49 @@ _MOST_MISTAKES, _LONGEST_LINE = 20, 400
 _Settings = TypeVar("_Settings", bound=BaseModel)
 
 
-class Case(BaseModel):
-    """One case: a table of settings per stage, in SI once read."""
+class CaseTables(BaseModel):
+    """One case: a table of settings per stage, in SI once read.
+
+    The tables follow from what the stages say of themselves (`pipeline.line.stages`).
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    mat: MatSettings = Field(description="The fiber mat: how it is drawn and when it is complete.")
-    surface: SurfaceSettings = Field(default_factory=SurfaceSettings, description="The fibers as a closed surface.")
-    enclosure: EnclosureSettings = Field(default_factory=EnclosureSettings, description="The duct around the mat.")
-    tetmesh: TetmeshSettings = Field(default_factory=TetmeshSettings, description="The air in tetrahedra.")
-    export: ExportSettings = Field(default_factory=ExportSettings, description="The files for solvers and viewers.")
-    quality: QualitySettings = Field(default_factory=QualitySettings, description="The limits a good mesh keeps to.")
-    flow: FlowSettings = Field(default_factory=FlowSettings, description="The air: its velocity and its properties.")
-    solve: SolveSettings = Field(default_factory=SolveSettings, description="The run of the solver.")
+    if TYPE_CHECKING:
+
+        def __init__(self, **tables: Any) -> None: ...
+
+        def __getattr__(self, table: str) -> Any: ...
+
+    @property
+    def asked(self) -> frozenset[str]:
+        """Stages that run only where they are asked for, and that the case file asks for by having their table."""
+        return frozenset(stage.name for stage in LINE if stage.asked and stage.name in self.model_fields_set)
+
+    def content(self) -> dict[str, Any]:
+        """Give the whole case as a JSON-able thing, every setting in SI; it makes the same case again."""
+        unasked = {stage.name for stage in LINE if stage.asked} - self.asked
+        return self.model_dump(mode="json", exclude=unasked)
+
+
+def _table(settings: Any, about: str, required: bool = False) -> Any:
+    return settings, Field(description=about) if required else Field(default_factory=settings, description=about)
+
+
+if TYPE_CHECKING:
+    Case = CaseTables
+else:
+    Case = create_model(
+        "Case",
+        __base__=CaseTables,
+        __doc__=CaseTables.__doc__,
+        **{
+            stage.name: _table(stage.settings, stage.about, stage.required)
+            for stage in LINE
+            if stage.settings is not None
+        },
+        **{name: _table(settings, about) for name, (settings, about) in SHARED.items()},
+    )
 
 
 def read_case(path: Path, overrides: tuple[str, ...] = ()) -> Case:

@@ -248,3 +248,21 @@ PositiveRatio = Annotated[
     float, quantity_reader(""), Field(gt=0, allow_inf_nan=False), _schema("", "a plain number above 0")
 ]
 """A plain number above 0, as a number or a percentage [-]."""
+
+
+def duration(seconds: float) -> str:
+    """Give a time in the units people use.
+
+    Examples
+    --------
+    >>> duration(0.0421), duration(12.34), duration(754), duration(7500)
+    ('42 ms', '12.3 s', '12 min 34 s', '2 h 5 min')
+    """
+    if seconds < 1.0:
+        return f"{1000 * seconds:.0f} ms"
+    if seconds < 100.0:
+        return f"{seconds:.1f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    if minutes >= 60:
+        return f"{minutes // 60} h {minutes % 60} min"
+    return f"{minutes} min {rest} s"

@@ -9,6 +9,7 @@ import pytest
 from pipeline.case import read_case
 from pipeline.line.run import Run, run
 from pipeline.mat.settings import BoxSettings, LayeredSettings
+from pipeline.nouns.quality import QualityReport
 
 CASES = Path(__file__).parent.parent / "cases"
 COARSE = ("tetmesh.edge=0.9", "tetmesh.growth=0.6", "surface.sides=8")
@@ -21,4 +22,4 @@ def test_a_bundled_case_runs_whole(path: Path, tmp_path: Path) -> None:
     if isinstance(case.mat, LayeredSettings | BoxSettings):
         case = read_case(path, (*COARSE, "mat.stop.count=6"))
     run(case, tmp_path, until="compare")
-    assert Run(case, tmp_path).quality.verdict in ("pass", "warn")
+    assert Run(case, tmp_path).read(QualityReport).verdict in ("pass", "warn")

@@ -6,6 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from pipeline.line.run import Run
+from pipeline.nouns.comparison import Comparison
+from pipeline.nouns.flow import Solution
+from pipeline.nouns.mesh_measures import TetmeshMeasures
 from validation.tables import table
 
 SOLVED = "cfd"
@@ -37,7 +40,7 @@ class Drop:
 
 def pressure_drops(run: Run) -> list[Drop]:
     """Collect the solved pressure drop of a run and those of all models."""
-    solution, comparison, measures = run.solution, run.comparison, run.mesh_measures
+    solution, comparison, measures = run.read(Solution), run.read(Comparison), run.read(TetmeshMeasures)
     own = (
         f"solved on {measures.cells:,} cells, {solution.iterations} iterations"
         f"{'' if solution.converged else ', not settled'}"

@@ -11,6 +11,9 @@ from pipeline.case import Case
 from pipeline.errors import CaseError
 from pipeline.line.run import Run, run
 from pipeline.mat.settings import ArraySettings
+from pipeline.nouns.fibers import Mat
+from pipeline.nouns.flow import Solution
+from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.progress import Progress, silent
 from validation.convergence import Convergence, convergence
 from validation.exact import hexagonal_drag, square_drag
@@ -124,10 +127,10 @@ def climb(case: Case, folder: Path, tell: Progress = silent) -> Rung:
     """
     mat, flow = case.mat, case.flow.flow()
     assert isinstance(mat, ArraySettings)
-    run(case, folder, "solve", tell=tell, without=frozenset({"report"}))
+    run(case, folder, "solve", progress=tell, without=frozenset({"report"}))
     this = Run(case, folder)
-    solution, measures = this.solution, this.mesh_measures
-    length = this.mat.slab.size[1]
+    solution, measures = this.read(Solution), this.read(TetmeshMeasures)
+    length = this.read(Mat).slab.size[1]
     drags = row_drags(folder / "solve" / "openfoam", mat.rows, flow)
     stars = [drag / (length * flow.viscosity * flow.face_velocity) for drag in drags]
     slip = SLIP_COEFFICIENT * flow.mean_free_path / (0.5 * mat.fiber_diameter)

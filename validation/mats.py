@@ -13,6 +13,10 @@ from pipeline.case import Case
 from pipeline.errors import CaseError
 from pipeline.line.run import Run, run
 from pipeline.mat.settings import LayeredSettings
+from pipeline.nouns.comparison import Comparison
+from pipeline.nouns.fibers import Mat
+from pipeline.nouns.flow import Solution
+from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.progress import Progress, silent
 
 SEEDS = (1, 2, 3)
@@ -88,16 +92,16 @@ def solved(case: Case, folder: Path, tell: Progress = silent) -> MatRun:
         If a stage fails.
     """
     assert isinstance(case.mat, LayeredSettings)
-    run(case, folder, "solve", tell=tell, without=frozenset({"report"}))
+    run(case, folder, "solve", progress=tell, without=frozenset({"report"}))
     this = Run(case, folder)
-    solution, comparison, measures = this.solution, this.comparison, this.mesh_measures
+    solution, comparison, measures = this.read(Solution), this.read(Comparison), this.read(TetmeshMeasures)
     return MatRun(
         side=case.mat.side,
         edge=case.tetmesh.edge,
         seed=case.mat.seed,
-        fibers=this.mat.fibers,
+        fibers=this.read(Mat).fibers,
         cells=measures.cells,
-        thickness=this.mat.thickness,
+        thickness=this.read(Mat).thickness,
         solidity=comparison.solidity["mesh"],
         cfd=solution.pressure_drop,
         davies=comparison.models["davies"].mesh,

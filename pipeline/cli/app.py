@@ -41,12 +41,14 @@ def run(
     until: str | None = None,
     set_: Annotated[tuple[str, ...], Parameter(name=["--set", "-s"], negative="", consume_multiple=False)] = (),
     force: Annotated[tuple[str, ...], Parameter(negative="", consume_multiple=False)] = (),
+    dry_run: Annotated[bool, Parameter(negative="")] = False,
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
     quiet: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
     """Run a case through the line: mat, surface, enclosure, tetmesh, quality, export, compare, report.
 
-    Finished stages are reused while nothing they depend on has changed, so a run that was stopped continues.
+    Finished stages are reused while nothing they depend on has changed, so a run that was stopped continues; why a
+    stage ran is said.
 
     Parameters
     ----------
@@ -61,14 +63,17 @@ def run(
         Override a key of the case file: ``--set mat.seed=7``. May be repeated.
     force
         Make this stage again even if its result still holds. May be repeated.
+    dry_run
+        Do nothing; tell what would run and why, with an estimate of cells, memory and processor time.
     as_json
-        Print JSON instead of tables: of each stage its folder, what became of it, its seconds and its counts in SI.
+        Print JSON instead of tables: of each stage its folder, what became of it and why, its seconds and its counts
+        in SI.
     quiet
         Print nothing but errors.
     """
     from pipeline.cli.running import run_case
 
-    run_case(found(case), out or Path("runs") / case.stem, until, set_, force, as_json, quiet)
+    run_case(found(case), out or Path("runs") / case.stem, until, set_, force, as_json, quiet, dry_run)
 
 
 @app.command

@@ -12,7 +12,7 @@ from rich.console import Console
 from pipeline.case import read_case
 from pipeline.cli.listen import listening
 from pipeline.cli.printable import printable
-from pipeline.cli.tables import quality_table
+from pipeline.cli.tables import plain_table
 from pipeline.export.read import mesh_files, read_mesh
 from pipeline.line.run import CASE, Run
 from pipeline.line.store import disk_trouble_explained, file_digest
@@ -21,6 +21,7 @@ from pipeline.nouns.quality import QualityReport
 from pipeline.progress import Progress
 from pipeline.quality.judge import judge
 from pipeline.quality.settings import QualitySettings
+from pipeline.quality.table import terminal_table
 
 FELL_SHORT = 1
 """Exit code where a limit does not hold."""
@@ -61,7 +62,9 @@ def judge_mesh(
 def _source(path: Path) -> _Source:
     if (path / CASE).is_file():
         run = Run.opened(path)
-        return _Source(run.mesh, [run.mesh_file], run.case.quality, f"The limits are those of {path / CASE}")
+        return _Source(
+            run.read(FaceMesh), [run.path(FaceMesh)], run.case.quality, f"The limits are those of {path / CASE}"
+        )
     return _Source(read_mesh(path), mesh_files(path), QualitySettings(), "The limits are those of checkMesh")
 
 
@@ -87,7 +90,8 @@ def _write_pages(
 
 def _show(report: QualityReport) -> None:
     out = Console()
-    out.print(quality_table(report))
+    table = terminal_table(report)
+    out.print(plain_table(table.title, table.columns, table.rows))
     patches = ", ".join(f"{name} {count:,}" for name, count in report.patches.items())
     out.print(f"patches by faces: {printable(patches)}", markup=False, highlight=False, soft_wrap=True)
     for reason in report.reasons:

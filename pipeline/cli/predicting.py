@@ -16,9 +16,12 @@ from pipeline.analytics.settings import FilterSettings, FlowSettings
 from pipeline.analytics.tables.rows import prediction_tables
 from pipeline.case import read_case
 from pipeline.cli.tables import plain_table
-from pipeline.line.run import Run, mat_predictor
+from pipeline.line.run import Run
 from pipeline.line.store import disk_trouble_explained
 from pipeline.mat.generate import generate
+from pipeline.mat.make import mat_predictor
+from pipeline.nouns.comparison import Comparison
+from pipeline.nouns.fibers import Mat
 
 
 def predict_filter(source: Path | None, given: Mapping[str, str], as_json: bool, plot: Path | None) -> None:
@@ -43,7 +46,7 @@ def _known(source: Path) -> tuple[FilterSettings, FlowSettings]:
     if source.is_dir():
         run = Run.opened(source)
         if (source / "compare").is_dir():
-            return filter_of_comparison(dataclasses.asdict(run.comparison)), run.case.flow
-        return filter_of_mat(run.mat, run.case.flow.flow()), run.case.flow
+            return filter_of_comparison(dataclasses.asdict(run.read(Comparison))), run.case.flow
+        return filter_of_mat(run.read(Mat), run.case.flow.flow()), run.case.flow
     case = read_case(source)
     return filter_of_mat(generate(case.mat, mat_predictor(case)), case.flow.flow()), case.flow

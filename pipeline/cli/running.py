@@ -11,9 +11,9 @@ from rich.console import Console
 
 from pipeline.case import read_case
 from pipeline.cli.listen import listening
-from pipeline.cli.tables import outcome_table, result_tables
+from pipeline.cli.tables import outcome_table, prospect_table, result_tables
 from pipeline.errors import CaseError
-from pipeline.line.run import LAST, STAGES, Run, run
+from pipeline.line.run import LAST, LINE, STAGES, Run, dry_run, run
 from pipeline.report.page.page import PAGE
 
 
@@ -25,13 +25,22 @@ def run_case(
     force: tuple[str, ...],
     as_json: bool,
     quiet: bool,
+    dry: bool = False,
 ) -> None:
-    """Run a case file and print what came of it."""
+    """Run a case file and print what came of it; or only tell what would."""
     for name in (*force, *([until] if until else [])):
         if name not in STAGES:
             raise CaseError(f"there is no stage {name!r}; the stages are {', '.join(STAGES)}")
     case = read_case(path, overrides)
     out = Console()
+    if dry:
+        prospects = dry_run(case, folder, until or LAST, frozenset(force))
+        if as_json:
+            told = {"folder": str(folder), "stages": [asdict(each) for each in prospects]}
+            sys.stdout.write(json.dumps(told, indent=2, allow_nan=False) + "\n")
+        else:
+            out.print(prospect_table(prospects))
+        return
     with listening(Console(stderr=True) if as_json else out, quiet) as tell:
         outcomes = run(case, folder, until or LAST, frozenset(force), tell)
     if as_json:
@@ -40,7 +49,7 @@ def run_case(
         return
     if quiet:
         return
-    out.print(outcome_table(outcomes))
+    out.print(outcome_table(outcomes, LINE))
     for table in result_tables(Run(case, folder), {each.stage for each in outcomes if each.how != "skipped"}):
         out.print(table)
     out.print(*_next_steps(folder), sep="\n", markup=False, highlight=False, soft_wrap=True)

@@ -12,9 +12,10 @@ from rich.console import Console
 
 from pipeline.case import Case, override, validate_as
 from pipeline.cli.listen import listening
-from pipeline.cli.tables import outcome_table, solution_table
+from pipeline.cli.tables import outcome_table, result_tables
 from pipeline.errors import CaseError, StageError
-from pipeline.line.run import Run, run
+from pipeline.line.run import LINE, Run, run
+from pipeline.nouns.flow import Solution
 from pipeline.solve.settings import SolveSettings
 
 SOLVE = "solve"
@@ -32,13 +33,14 @@ def solve_run(folder: Path, overrides: tuple[str, ...], again: bool, as_json: bo
     last = next(outcome for outcome in outcomes if outcome.stage == SOLVE)
     if last.how == "skipped":
         raise StageError(f"{folder} was not solved: {last.counts['reason']}")
-    solution = Run(case, folder).solution
+    results = Run(case, folder)
+    solution = results.read(Solution)
     if as_json:
         sys.stdout.write(json.dumps(dataclasses.asdict(solution), indent=2, allow_nan=False) + "\n")
     elif not quiet:
         out = Console()
-        out.print(outcome_table(outcomes))
-        out.print(solution_table(solution))
+        out.print(outcome_table(outcomes, LINE))
+        out.print(*result_tables(results, {SOLVE}))
         out.print(f"Everything is in {last.folder}", markup=False, highlight=False, soft_wrap=True)
 
 

@@ -3,18 +3,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
-from pipeline.analytics.tables.rows import comparison_tables, length
 from pipeline.cli.doctor import Finding
-from pipeline.line.run import Outcome, Run
-from pipeline.nouns.flow import Solution
-from pipeline.nouns.quality import QualityReport
-from pipeline.quality.table import HEADER, rows, summary
+from pipeline.line.results import Results
+from pipeline.line.run import Outcome, Prospect
+from pipeline.line.stage import Stage
+from pipeline.units import duration
 
 
 def findings_table(findings: Iterable[Finding]) -> Table:
@@ -26,49 +25,42 @@ def findings_table(findings: Iterable[Finding]) -> Table:
     return table
 
 
-def outcome_table(outcomes: Iterable[Outcome]) -> Table:
-    """Show what became of each stage."""
-    table = Table("stage", "", "time", "result", box=None)
+def outcome_table(outcomes: Iterable[Outcome], line: Iterable[Stage]) -> Table:
+    """Show what became of each stage, and why."""
+    units = {stage.name: stage.units for stage in line}
+    table = Table("stage", "", "time", "result", "why", box=None)
     for outcome in outcomes:
-        result = ", ".join(_count(name, value) for name, value in outcome.counts.items())
-        table.add_row(outcome.stage, outcome.how, duration(outcome.seconds), Text(result))
+        result = ", ".join(_count(name, value, units[outcome.stage]) for name, value in outcome.counts.items())
+        why = "; ".join(outcome.why)
+        table.add_row(outcome.stage, outcome.how, duration(outcome.seconds), Text(result), Text(why))
     return table
 
 
-def duration(seconds: float) -> str:
-    """Give a time in the units people use.
-
-    Examples
-    --------
-    >>> duration(0.0421), duration(12.34), duration(754), duration(7500)
-    ('42 ms', '12.3 s', '12 min 34 s', '2 h 5 min')
-    """
-    if seconds < 1.0:
-        return f"{1000 * seconds:.0f} ms"
-    if seconds < 100.0:
-        return f"{seconds:.1f} s"
-    minutes, rest = divmod(round(seconds), 60)
-    if minutes >= 60:
-        return f"{minutes // 60} h {minutes % 60} min"
-    return f"{minutes} min {rest} s"
+def prospect_table(prospects: Iterable[Prospect]) -> Table:
+    """Show what would become of each stage, why, and what it would take."""
+    table = Table("stage", "would", "why", "cells", "memory", "processor time", box=None)
+    for each in prospects:
+        cost = each.estimate
+        numbers = (
+            (f"{cost.cells:,.2g}", f"{cost.memory / 2**30:.2g} GiB", duration(cost.seconds)) if cost else ("", "", "")
+        )
+        table.add_row(each.stage, each.would, Text("; ".join(each.why)), *numbers)
+    return table
 
 
-_PERCENT = {"solidity", "mesh_solidity", "efficiency", "volume_error", "force_balance_error"}
-_UNITS = {"fluid_volume": ("um3", 1e18), "max_non_orthogonality": ("deg", 1.0), "pressure_drop": ("Pa", 1.0)}
+_PER_SI = {"%": 100.0, "um": 1e6, "um3": 1e18, "Pa": 1.0, "deg": 1.0}
+"""How many of a unit, in which a stage tells a count, make one in SI."""
 
 
-def _count(name: str, value: object) -> str:
-    """Give one count of a stage's manifest, which is in SI, in the units people use."""
+def _count(name: str, value: object, units: Mapping[str, str]) -> str:
+    """Give one count of a stage's manifest, which is in SI, in the unit that its stage names."""
     label = name.replace("_", " ")
     if name == "reason":
         return str(value)
     if isinstance(value, bool):
         return label if value else f"not {label}"
-    if isinstance(value, int | float) and name in _PERCENT:
-        return f"{label} {100 * value:.4g} %"
-    if isinstance(value, int | float) and name in _UNITS:
-        unit, per_si = _UNITS[name]
-        return f"{label} {value * per_si:,.4g} {unit}"
+    if isinstance(value, int | float) and name in units:
+        return f"{label} {value * _PER_SI[units[name]]:,.4g} {units[name]}"
     if isinstance(value, float):
         return f"{label} {value:.4g}"
     if isinstance(value, int):
@@ -76,45 +68,10 @@ def _count(name: str, value: object) -> str:
     return f"{label} {' '.join(map(str, value))}" if isinstance(value, list | tuple) else f"{label} {value}"
 
 
-def result_tables(run: Run, stages: Iterable[str]) -> list[Group]:
-    """Make the quality report and the comparison into tables, where the run has them."""
-    tables = []
-    if "quality" in stages:
-        tables.append(quality_table(run.quality, "mesh quality: "))
-    if "compare" in stages:
-        tables += [plain_table(table.title, table.columns, table.rows) for table in comparison_tables(run.comparison)]
-    if "solve" in stages:
-        tables.append(solution_table(run.solution))
-    return tables
-
-
-def quality_table(report: QualityReport, opening: str = "") -> Group:
-    """Show a mesh's quality: one line per metric. What each is measured on stands in the JSON: a terminal is narrow."""
-    return plain_table(
-        opening + summary(report), (HEADER[0], *HEADER[2:]), [(name, *numbers) for name, _, *numbers in rows(report)]
-    )
-
-
-def solution_table(solution: Solution) -> Group:
-    """Lay a solution out in the units people use."""
-    rows = [
-        ("pressure drop", f"{solution.pressure_drop:.4g} Pa"),
-        ("flow rate", f"{solution.flow_rate * 1e9:.4g} mm3/s"),
-        ("drag on the fibers", f"{solution.drag * 1e9:.4g} nN"),
-        ("permeability", f"{solution.permeability * 1e12:.4g} um2"),
-    ]
-    if solution.effective_fiber_diameter is not None:
-        rows.append(("effective fiber diameter", length(solution.effective_fiber_diameter)))
-    if solution.f_star is not None:
-        rows.append(("drag per length F*", f"{solution.f_star:.5g}"))
-    settled = "settled" if solution.converged else "NOT settled: raise solve.max_iterations or solve.time_limit"
-    rows += [
-        ("iterations", f"{solution.iterations:,}, {settled}"),
-        ("forces balance to", f"{abs(solution.force_balance_error):.2g}"),
-        ("mass balances to", f"{abs(solution.mass_balance_error):.2g}"),
-        ("time", f"{duration(solution.seconds)} on {solution.cores} core{'s' if solution.cores > 1 else ''}"),
-    ]
-    return plain_table("solution", ("", ""), rows)
+def result_tables(results: Results, stages: Iterable[str]) -> list[Group]:
+    """Lay out what stages show of their results."""
+    shown = [stage.tables for stage in results.line if stage.name in stages and stage.tables is not None]
+    return [plain_table(table.title, table.columns, table.rows) for tables in shown for table in tables(results)]
 
 
 def story_table(stories: Iterable[tuple[str, str]]) -> Table:

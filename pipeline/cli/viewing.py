@@ -8,12 +8,14 @@ from rich.console import Console
 
 from pipeline.cli.listen import listening
 from pipeline.errors import CaseError, StageError
-from pipeline.line.run import Run, content_of, report
+from pipeline.line.run import Run, report
 from pipeline.line.store import disk_trouble_explained
-from pipeline.report.page.page import subject_of
+from pipeline.nouns.fibers import Mat
+from pipeline.report.page.page import PAGE
 from pipeline.report.views.painter import possible
 from pipeline.report.views.render import Painting, screenless
 from pipeline.report.views.scenes import SCENES, Subject, show
+from pipeline.report.views.subject import subject_of
 
 PICTURES = "pictures"
 """Folder of a run that pictures go into when nobody names a file."""
@@ -26,14 +28,14 @@ def write_page(folder: Path, quiet: bool) -> None:
     """Write a run's page and say where it is."""
     out = Console()
     with listening(out, quiet) as tell:
-        page = report(folder, tell)
+        page = report(folder, tell) / PAGE
     if not quiet:
         out.print(str(page), markup=False, highlight=False, soft_wrap=True)
 
 
 def view_run(folder: Path, scene: str | None, screenshot: Path | None) -> None:
     """Open a window on a run, or draw pictures where a file is asked for or there is no screen."""
-    subject = subject_of(content_of(Run.opened(folder)))
+    subject = subject_of(Run.opened(folder))
     if subject is None:
         raise StageError(_NOTHING.format(folder))
     there = possible(subject)
@@ -59,8 +61,8 @@ def write_scene_of_run(folder: Path, path: Path) -> None:
 
     out = Console()
     with listening(out, False) as tell:
-        content = content_of(Run.opened(folder))
-        if content.mat is None:
+        content = Run.opened(folder)
+        if content.get(Mat) is None:
             raise StageError(_NOTHING.format(folder))
         tell("collecting surfaces")
         with disk_trouble_explained(path):

@@ -10,14 +10,12 @@ import contextlib
 import dataclasses
 import errno
 import hashlib
-import importlib.metadata
 import json
 import os
 import shutil
 import typing
 import zipfile
-from collections.abc import Iterable, Iterator
-from functools import cache
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -29,8 +27,7 @@ from pipeline.geometry.box import Box
 
 T = TypeVar("T")
 MANIFEST = "manifest.json"
-_PACKAGE = Path(__file__).parent.parent
-_SOURCES = (".py", ".jinja", ".css", ".js")
+_PARTS = ("files", "records")
 # What no change of the case can mend, only the user: the disk and its permissions.
 _DISK_TROUBLE = {
     errno.ENOSPC, errno.EACCES, errno.EPERM, errno.EROFS, errno.EDQUOT, errno.ENOTDIR, errno.EFBIG, errno.EEXIST,
@@ -47,19 +44,6 @@ def file_digest(path: Path) -> str:
     """SHA-256 of a file's bytes."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-@cache
-def code_digest(rooms: tuple[str, ...]) -> str:
-    """SHA-256 of the package's sources."""
-    sources = sorted(path for path in _PACKAGE.rglob("*") if path.suffix in _SOURCES)
-    lines = [f"{source.relative_to(_PACKAGE).as_posix()} {file_digest(source)}" for source in sources]
-    return hashlib.sha256("\n".join(lines).encode()).hexdigest()
-
-
-def versions(libraries: Iterable[str]) -> dict[str, str]:
-    """Installed version of each library, by its distribution's name."""
-    return {name: importlib.metadata.version(name) for name in sorted(libraries)}
 
 
 def write_json(path: Path, content: object) -> None:
@@ -153,17 +137,34 @@ def load(kind: type[T], path: Path) -> T:
     return kind(**values)
 
 
-def finished(stage: Path, key: str) -> dict[str, Any] | None:
-    """Give the manifest of a stage if it was made by just this `key` and all its files are as it left them."""
+def read_manifest(stage: Path) -> dict[str, Any] | None:
+    """Give what made a stage; None where its manifest is missing, damaged, or of a program that wrote others."""
     try:
         manifest: dict[str, Any] = read_json(stage / MANIFEST)
-        files: dict[str, str] = manifest["files"]
-        if manifest["key"] != key:
-            return None
-        intact = all(file_digest(stage / name) == content for name, content in files.items())
-    except (OSError, ValueError, KeyError, TypeError):
+        whole = all(isinstance(manifest[part], dict) for part in _PARTS) and isinstance(manifest["key"], str)
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
-    return manifest if intact else None
+    return manifest if whole else None
+
+
+def damaged(stage: Path, manifest: dict[str, Any]) -> list[str]:
+    """Name the files of a stage's result that are not as it left them."""
+    return [name for name, content in manifest["files"].items() if _digest_or_none(stage / name) != content]
+
+
+def _digest_or_none(path: Path) -> str | None:
+    try:
+        return file_digest(path) if path.is_file() else None
+    except OSError:
+        return None
+
+
+def finished(stage: Path, key: str) -> dict[str, Any] | None:
+    """Give the manifest of a stage if it was made by just this `key` and all its files are as it left them."""
+    manifest = read_manifest(stage)
+    if manifest is None or manifest["key"] != key or damaged(stage, manifest):
+        return None
+    return manifest
 
 
 @contextlib.contextmanager
@@ -236,7 +237,19 @@ def locked(folder: Path) -> Iterator[None]:
         yield
 
 
-def write_manifest(stage: Path, content: dict[str, Any]) -> None:
-    """Close a stage's side folder with what made it and the digest of each of its files."""
-    names = sorted(path.relative_to(stage).as_posix() for path in stage.rglob("*") if path.is_file())
-    write_json(stage / MANIFEST, {**content, "files": {name: file_digest(stage / name) for name in names}})
+def write_manifest(stage: Path, content: dict[str, Any], records: tuple[str, ...] = ()) -> None:
+    """Close a stage's side folder with what made it and the digest of each of its files.
+
+    Parameters
+    ----------
+    stage : Path
+    content : dict
+    records : tuple of str
+        Patterns of the files that are no part of the result.
+    """
+    paths = sorted(path.relative_to(stage) for path in stage.rglob("*") if path.is_file())
+    digests = {path.as_posix(): file_digest(stage / path) for path in paths}
+    kept = {name for name, path in zip(digests, paths, strict=True) if any(path.match(each) for each in records)}
+    files = {name: digest for name, digest in digests.items() if name not in kept}
+    written = {name: digest for name, digest in digests.items() if name in kept}
+    write_json(stage / MANIFEST, {**content, "files": files, "records": written})

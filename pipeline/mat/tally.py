@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from pipeline.mat.measures import MatMeasures
 from pipeline.mat.settings import Stop
+from pipeline.nouns.mat_measures import MatMeasures
 
 Predict = Callable[[float, float, float], float]
 """Predicts the quantity of a stop from solidity [-], thickness [m] and mean fiber diameter [m]."""

@@ -6,11 +6,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from pipeline.errors import StageError
-from pipeline.mesh.improve.finish import TetmeshMeasures
 from pipeline.mesh.settings import TetmeshSettings
 from pipeline.mesh.wall_error import fidelity
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.progress import Progress, silent
 
 

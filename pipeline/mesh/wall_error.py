@@ -2,8 +2,6 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from pipeline.geometry.polyhedra import fanned
@@ -11,33 +9,11 @@ from pipeline.geometry.triangles import area_vectors
 from pipeline.mesh.distance import fiber_distance
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.mesh_measures import Fidelity
 from pipeline.nouns.patches import FIBERS
 
 _STEP = 0.35  # of the lattice that finds the nearest fiber, in mean fiber diameters
 _REACH = 1.5  # diameters; no wall is that far from every fiber
-
-
-@dataclass(frozen=True, slots=True)
-class Fidelity:
-    """Distance between the mesh's walls and the true cylinders, weighted by area.
-
-    Parameters
-    ----------
-    mean_deviation : float [-]
-        Mean distance of the walls from the nearest cylinder, either way, in mean fiber diameters.
-    typical_deviation : float [-]
-        99 % of the walls' area is nearer than this, in mean fiber diameters.
-    largest_deviation : float [-]
-        Of all, in mean fiber diameters: found where fibers meet, and the sharp air between them is filled.
-    radius_error : tuple of float [-]
-        Of each fiber with walls in the duct, by number (0 for one without): how much its walls stand off its true
-        radius on average, relative; above 0 they stand outside.
-    """
-
-    mean_deviation: float
-    typical_deviation: float
-    largest_deviation: float
-    radius_error: tuple[float, ...]
 
 
 def fidelity(mesh: FaceMesh, domain: FluidDomain) -> Fidelity:

@@ -4,6 +4,10 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from pipeline.nouns.arrays import Floats, freeze, require
+
 
 @dataclass(frozen=True, slots=True)
 class Metric:
@@ -65,3 +69,25 @@ class QualityReport:
     def passed(self) -> bool:
         """Whether every limit holds."""
         return self.verdict == "pass"
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class CellFields:
+    """Measures of quality as fields on the cells, for coloring them.
+
+    Parameters
+    ----------
+    names : tuple of str
+    values : (names, cells) array
+    """
+
+    names: tuple[str, ...]
+    values: Floats
+
+    def __post_init__(self) -> None:
+        freeze(self, values=np.asarray(self.values, np.float64))
+        require(self.values.ndim == 2 and len(self.values) == len(self.names), "not every name has its values")
+
+    def by_name(self) -> dict[str, Floats]:
+        """Give each field by its name, (cells,) arrays."""
+        return dict(zip(self.names, self.values, strict=True))

@@ -10,6 +10,9 @@ from pathlib import Path
 DEBIAN_HOME = Path("/usr/share/openfoam")
 INSTALL = "on Debian and Ubuntu: apt-get install openfoam; otherwise see openfoam.com, and source its bashrc"
 
+SOLVER = {"com": "simpleFoam", "org": "foamRun"}
+"""Program that solves a written case, by the dialect it is written for."""
+
 
 def openfoam_missing(cores: int = 1, solver: str = "simpleFoam") -> str | None:
     """Say why OpenFOAM cannot run here, and what to do; None where it can.

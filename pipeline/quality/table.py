@@ -2,7 +2,13 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+from typing import TYPE_CHECKING
+
 from pipeline.nouns.quality import Metric, QualityReport
+from pipeline.nouns.section import Table
+
+if TYPE_CHECKING:
+    from pipeline.line.results import Results
 
 HEADER = ("metric", "of", "min", "mean", "99 %", "max", "limit", "beyond")
 
@@ -61,3 +67,14 @@ def summary(report: QualityReport) -> str:
     }
     size = f"{report.cells:,} cells, {report.points:,} points, {report.faces:,} faces"
     return f"{size}: {words[report.verdict]}"
+
+
+def terminal_table(report: QualityReport, opening: str = "") -> Table:
+    """Give one line per metric; what each is measured on stands in the JSON, for a terminal is narrow."""
+    lines = tuple((name, *numbers) for name, _, *numbers in rows(report))
+    return Table(opening + summary(report), (HEADER[0], *HEADER[2:]), lines)
+
+
+def tables(results: "Results") -> tuple[Table, ...]:
+    """Give the table of the mesh."""
+    return (terminal_table(results.read(QualityReport), "mesh quality: "),)

@@ -9,6 +9,7 @@ from pipeline.analytics.models.prediction import filter_of_mat, predict
 from pipeline.errors import CaseError
 from pipeline.line import store
 from pipeline.line.run import Run, run
+from pipeline.nouns.fibers import Mat
 from pipeline.study.plan import Task
 from pipeline.study.quantity import NO_ANSWER, PREDICTED, Results, stage_results
 
@@ -47,7 +48,7 @@ def read_result(task: Task) -> Results:
 def _predicted(task: Task) -> Results:
     flow = task.case.flow
     try:
-        return dataclasses.asdict(predict(filter_of_mat(Run(task.case, task.work).mat, flow.flow()), flow))
+        return dataclasses.asdict(predict(filter_of_mat(Run(task.case, task.work).read(Mat), flow.flow()), flow))
     except CaseError as problem:
         # no model holds for such a mat, but its other numbers stand
         return {NO_ANSWER: str(problem)}

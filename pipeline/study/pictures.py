@@ -5,8 +5,8 @@
 from pathlib import Path
 
 from pipeline.case import read_case
-from pipeline.line.run import mat_predictor
 from pipeline.mat.generate import generate
+from pipeline.mat.make import mat_predictor
 from pipeline.pictures.panels import contact_sheet, write_png
 from pipeline.study.settings import Study
 from pipeline.study.tables import shown

@@ -10,7 +10,7 @@ from typing import Any
 from pipeline.case import Case, read_case
 from pipeline.errors import CaseError
 from pipeline.line import store
-from pipeline.line.run import LINE, STAGES
+from pipeline.line.run import program_of, wanted
 from pipeline.mat.settings import ArraySettings, FileSettings
 from pipeline.study.settings import Study
 
@@ -113,14 +113,15 @@ def _runs(study: Study, number: int, point: dict[str, Any], folder: Path) -> lis
 
 
 def _key(case: Case, until: str) -> str:
-    stages = LINE[: STAGES.index(until) + 1]
     settings = case.model_dump(mode="json")
-    source = case.mat.file if isinstance(case.mat, FileSettings) else None
+    stages = wanted(case, until)
+    tables = dict.fromkeys(name for stage in stages for name in (stage.name, *stage.reads, "flow") if name in settings)
+    sources = [path for stage in stages for path in stage.sources(case)]
     return store.digest(
         {
             "until": until,
-            "file": store.file_digest(source) if source is not None and source.is_file() else "",
-            "parameters": {name: settings[name] for stage in stages for name in (*stage.settings, "flow")},
+            "sources": [store.file_digest(path) for path in sources if path.is_file()],
+            "parameters": {name: settings[name] for name in tables},
             "made_by": _made_by(until),
         }
     )
@@ -128,5 +129,4 @@ def _key(case: Case, until: str) -> str:
 
 @cache
 def _made_by(until: str) -> str:
-    stages = LINE[: STAGES.index(until) + 1]
-    return store.digest([[store.code_digest(stage.rooms), store.versions(stage.libraries)] for stage in stages])
+    return store.digest(list(program_of(until)))

@@ -19,8 +19,11 @@ from pipeline.case import Case, read_case
 from pipeline.geometry.tets import volumes
 from pipeline.line import store
 from pipeline.line.run import Run, run
+from pipeline.nouns.comparison import Comparison
+from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.patches import FIBERS, PATCHES
+from pipeline.nouns.quality import QualityReport
 from tests.openfoam import figures, foam, patches
 
 SMOKE = Path(__file__).parents[2] / "cases" / "smoke.toml"
@@ -61,18 +64,18 @@ def test_the_fixed_keys_of_the_results_are_there(smoke: Run) -> None:
 
 
 def test_volume_is_kept_from_the_surface_to_the_mesh(smoke: Run) -> None:
-    domain, mesh = smoke.domain, smoke.mesh
+    domain, mesh = smoke.read(FluidDomain), smoke.read(FaceMesh)
     solid = domain.box.volume - domain.volume
     assert mesh.volume == pytest.approx(domain.volume, abs=smoke.case.tetmesh.volume_error * solid)
     # what the fitting is for: a hundredth of what the envelope cost
     assert mesh.volume == pytest.approx(domain.volume, abs=2e-4 * solid)
-    comparison = smoke.comparison
+    comparison = smoke.read(Comparison)
     assert comparison.solidity["mesh"] == pytest.approx(comparison.solidity["surface"], rel=0.01)
     assert comparison.solidity["nominal"] > comparison.solidity["surface"]  # overlaps are counted twice there
 
 
 def test_the_mesh_fills_the_duct_and_its_planes_are_flat(smoke: Run) -> None:
-    mesh, box = smoke.mesh, smoke.domain.box
+    mesh, box = smoke.read(FaceMesh), smoke.read(FluidDomain).box
     assert tuple(patch.name for patch in mesh.patches) == PATCHES
     shape = mesh.polyhedra()
     assert (shape.volumes > 0).all()
@@ -90,7 +93,7 @@ def test_the_mesh_fills_the_duct_and_its_planes_are_flat(smoke: Run) -> None:
 def test_the_fibers_patch_lies_on_the_fibers(smoke: Run) -> None:
     from scipy.spatial import cKDTree
 
-    mesh, domain = smoke.mesh, smoke.domain
+    mesh, domain = smoke.read(FaceMesh), smoke.read(FluidDomain)
     unit = 2 * domain.radius.mean()
     triangles = domain.triangles[domain.patch == PATCHES.index(FIBERS)]
     weights = np.random.default_rng(0).dirichlet(np.ones(3), (len(triangles), 60))
@@ -154,8 +157,8 @@ def test_pyvista_reads_the_written_mesh_with_its_patches(smoke: Run) -> None:
 
     blocks = pyvista.read(smoke.folder / "export" / "vtk" / "mesh.vtm")
     internal = blocks["internal"]
-    assert internal.n_cells == smoke.quality.cells
-    assert internal.volume == pytest.approx(smoke.mesh.volume, rel=1e-6)
+    assert internal.n_cells == smoke.read(QualityReport).cells
+    assert internal.volume == pytest.approx(smoke.read(FaceMesh).volume, rel=1e-6)
     assert set(blocks["boundary"].keys()) == set(PATCHES)
 
 
@@ -163,7 +166,7 @@ def test_pyvista_reads_the_written_mesh_with_its_patches(smoke: Run) -> None:
 def test_checkmesh_says_mesh_ok_and_agrees_to_five_digits(smoke: Run) -> None:
     text = foam(smoke.folder / "export" / "openfoam", "checkMesh")
     assert "Mesh OK." in text
-    said, ours = figures(text), smoke.quality
+    said, ours = figures(text), smoke.read(QualityReport)
     assert patches(text) == ours.patches
     assert set(patches(text)) == set(PATCHES)
     metrics = ours.metrics
@@ -189,11 +192,11 @@ def test_the_written_case_converges_and_keeps_mass(smoke: Run, tmp_path: Path) -
         flows[name] = float(table[-1].split()[1])
     assert flows["outletFlow"] == pytest.approx(-flows["inletFlow"], rel=1e-5)
     flow = smoke.case.flow.flow()
-    assert -flows["inletFlow"] == pytest.approx(flow.face_velocity * smoke.domain.box.face_area, rel=1e-9)
+    assert -flows["inletFlow"] == pytest.approx(flow.face_velocity * smoke.read(FluidDomain).box.face_area, rel=1e-9)
     table = next((case / "postProcessing" / "inletPressure").glob("*/*.dat")).read_text().splitlines()
     drop = flow.density * float(table[-1].split()[1])
     # correlations of random media spread by 2.5: this one must at least be in their company
-    models = [row.mesh for row in smoke.comparison.models.values()]
+    models = [row.mesh for row in smoke.read(Comparison).models.values()]
     assert 0.5 * min(models) < drop < 2 * max(models)
 
 
@@ -246,7 +249,7 @@ def test_a_folder_that_cannot_be_written_is_a_clear_error(tmp_path: Path) -> Non
 
 
 def test_mesh_and_faces_are_the_same_mesh(smoke: Run) -> None:
-    mesh: FaceMesh = smoke.mesh
+    mesh: FaceMesh = smoke.read(FaceMesh)
     tets = mesh.tets()
     assert mesh.cells == len(tets)
     boundary = mesh.faces - mesh.internal
@@ -281,9 +284,9 @@ def test_pyvistas_own_reader_takes_the_openfoam_case(smoke: Run) -> None:
     reader = pyvista.OpenFOAMReader(smoke.folder / "export" / "openfoam" / "case.foam")
     blocks = reader.read()
     internal = blocks["internalMesh"]
-    assert internal.n_cells == smoke.quality.cells
+    assert internal.n_cells == smoke.read(QualityReport).cells
     # its points are 32-bit floats
-    assert internal.volume == pytest.approx(smoke.mesh.volume, rel=1e-4)
+    assert internal.volume == pytest.approx(smoke.read(FaceMesh).volume, rel=1e-4)
     # a MultiBlock iterates over its blocks, not over their names
     faces = {name: blocks["boundary"][name].n_cells for name in blocks["boundary"].keys()}  # noqa: SIM118
-    assert faces == smoke.quality.patches
+    assert faces == smoke.read(QualityReport).patches

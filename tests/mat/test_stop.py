@@ -12,9 +12,10 @@ from pipeline.analytics.models.growth import predictor
 from pipeline.analytics.settings import FlowSettings
 from pipeline.errors import CaseError
 from pipeline.mat.generate import generate
-from pipeline.mat.measures import MatMeasures, measure
+from pipeline.mat.measures import measure
 from pipeline.mat.settings import BoxSettings, LayeredSettings, Stop
 from pipeline.mat.tally import report_stop
+from pipeline.nouns.mat_measures import MatMeasures
 
 SLOW = FlowSettings(face_velocity=0.025, preset="paper", pressure_model="davies")
 """The air of Figs. 10 to 13."""

@@ -17,8 +17,10 @@ from pipeline.mesh.engines.snappy.layout import layout
 from pipeline.mesh.engines.snappy.mesh import snapped
 from pipeline.mesh.engines.snappy.rebuild import joined, without
 from pipeline.mesh.settings import TetmeshSettings
+from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.patches import FIBERS, PATCHES
+from pipeline.nouns.quality import QualityReport
 from pipeline.openfoam.read import read_openfoam
 from tests.openfoam import foam
 from tests.sample_meshes import duct
@@ -64,7 +66,7 @@ def straight(tmp_path_factory: pytest.TempPathFactory) -> Run:
 
 
 def assert_exact_planes(mesh: FaceMesh, found: Run) -> None:
-    box = found.domain.box
+    box = found.read(FluidDomain).box
     walls = {"inlet": (2, 0), "outlet": (2, 1), "xmin": (0, 0), "xmax": (0, 1), "ymin": (1, 0), "ymax": (1, 1)}
     for name, (axis, end) in walls.items():
         faces = mesh.patch(name)
@@ -78,7 +80,7 @@ def area(mesh: FaceMesh, name: str) -> float:
 
 @pytest.mark.openfoam
 def test_a_straight_fiber_keeps_its_volume_and_its_patches_their_areas(straight: Run) -> None:
-    domain, radius = straight.domain, 0.5 * DIAMETER
+    domain, radius = straight.read(FluidDomain), 0.5 * DIAMETER
     mesh, measures = snapped(domain, TetmeshSettings(engine="snappy"))
     x, y, z = domain.box.size
     exact = math.pi * radius**2 * y
@@ -97,8 +99,8 @@ def test_a_straight_fiber_keeps_its_volume_and_its_patches_their_areas(straight:
 
 @pytest.mark.openfoam
 def test_two_processes_give_the_same_air(straight: Run) -> None:
-    one, _ = snapped(straight.domain, TetmeshSettings(engine="snappy"))
-    two, _ = snapped(straight.domain, TetmeshSettings(engine="snappy").changed(cores=2))
+    one, _ = snapped(straight.read(FluidDomain), TetmeshSettings(engine="snappy"))
+    two, _ = snapped(straight.read(FluidDomain), TetmeshSettings(engine="snappy").changed(cores=2))
     assert tuple(patch.name for patch in two.patches) == PATCHES
     assert two.volume == pytest.approx(one.volume, rel=1e-9)
     # refinement is decided alike, but points are moved in another order
@@ -108,12 +110,12 @@ def test_two_processes_give_the_same_air(straight: Run) -> None:
 
 @pytest.mark.openfoam
 def test_the_smoke_case_passes_every_limit_and_checkmesh(snapped_smoke: Run) -> None:
-    mesh, domain = snapped_smoke.mesh, snapped_smoke.domain
+    mesh, domain = snapped_smoke.read(FaceMesh), snapped_smoke.read(FluidDomain)
     assert tuple(patch.name for patch in mesh.patches) == PATCHES
     assert_exact_planes(mesh, snapped_smoke)
     solid = domain.box.volume - domain.volume
     assert mesh.volume == pytest.approx(domain.volume, abs=1e-5 * solid)
-    quality = snapped_smoke.quality
+    quality = snapped_smoke.read(QualityReport)
     assert quality.verdict == "pass", quality.reasons
     text = foam(snapped_smoke.folder / "export" / "openfoam", "checkMesh")
     assert "Mesh OK." in text
@@ -128,8 +130,8 @@ def test_the_case_beside_the_mesh_meshes_itself_again(snapped_smoke: Run) -> Non
     assert "warning" not in text
     again = read_openfoam(case)
     # in meters, before cells are joined: the smoke case loses a handful of them
-    assert 0 <= again.cells - snapped_smoke.mesh.cells < 50
-    assert again.volume == pytest.approx(snapped_smoke.domain.volume, rel=0.005)
+    assert 0 <= again.cells - snapped_smoke.read(FaceMesh).cells < 50
+    assert again.volume == pytest.approx(snapped_smoke.read(FluidDomain).volume, rel=0.005)
     assert tuple(patch.name for patch in again.patches) == PATCHES
 
 
@@ -137,7 +139,7 @@ def test_the_case_beside_the_mesh_meshes_itself_again(snapped_smoke: Run) -> Non
 def test_a_mesh_that_takes_too_long_is_ended_with_advice(straight: Run) -> None:
     settings = TetmeshSettings(engine="snappy", edge=0.1).changed(time_limit=0.5)
     with pytest.raises(StageError, match=r"limit, while .*raise tetmesh\.snappy\.time_limit"):
-        snapped(straight.domain, settings)
+        snapped(straight.read(FluidDomain), settings)
 
 
 def test_without_openfoam_the_run_ends_before_it_starts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -163,9 +165,9 @@ def test_a_fiber_that_fits_between_the_blocks_centers_is_found(straight: Run, tm
     # two blocks of 1.4 diameters beside each other, and the fiber along their common edge: snappyHexMesh looks for the
     # surface on the lines between centers, none of which meets it
     settings = TetmeshSettings(engine="snappy")
-    start = write_case(straight.domain, settings, tmp_path)
-    assert min(straight.domain.box.size[:2]) / start.counts[0] > DIAMETER
-    mesh, _ = snapped(straight.domain, settings, folder=tmp_path)
+    start = write_case(straight.read(FluidDomain), settings, tmp_path)
+    assert min(straight.read(FluidDomain).box.size[:2]) / start.counts[0] > DIAMETER
+    mesh, _ = snapped(straight.read(FluidDomain), settings, folder=tmp_path)
     assert area(mesh, FIBERS) > 0
 
 

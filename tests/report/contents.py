@@ -10,15 +10,16 @@ from pipeline.analytics.models.comparison import compare
 from pipeline.case import Case
 from pipeline.enclosure.duct import enclose
 from pipeline.enclosure.settings import EnclosureSettings
+from pipeline.line.results import Results
+from pipeline.line.stages import LINE
 from pipeline.mat.generate import generate
 from pipeline.mat.measures import measure
 from pipeline.mat.settings import Constant, LayeredSettings, Stop
-from pipeline.mesh.improve.finish import TetmeshMeasures
 from pipeline.nouns.flow import Solution
 from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.mesh_measures import MeshingCost, TetmeshMeasures
 from pipeline.quality.judge import judge
 from pipeline.quality.settings import QualitySettings
-from pipeline.report.page.content import ReportContent
 from pipeline.surface.settings import SurfaceSettings
 from pipeline.surface.union import unite
 from tests.sample_meshes import duct
@@ -39,29 +40,36 @@ def small_mesh() -> FaceMesh:
 def manifest(stage: str) -> dict[str, Any]:
     """What `pipeline.line.store` writes beside a stage."""
     return {
-        "stage": stage, "key": "a" * 64, "code": "b" * 64, "libraries": {"numpy": "2.0"}, "seconds": 1.5,
-        "peak_memory": 2**28, "counts": {"formats": ["openfoam", "vtk"]}, "files": {f"{stage}.npz": "c" * 64},
+        "stage": stage, "key": "a" * 64, "code": {"a.py": "b" * 64}, "records": {}, "libraries": {"numpy": "2.0"},
+        "seconds": 1.5, "peak_memory": 2**28, "counts": {"formats": ["openfoam", "vtk"]},
+        "files": {f"{stage}.npz": "c" * 64},
     }  # fmt: skip
 
 
 @cache
-def _parts() -> dict[str, Any]:
+def _parts() -> tuple[object, ...]:
     mat, mesh = generate(MAT), small_mesh()
     surface = unite(mat, SurfaceSettings())
-    return {
-        "mat": mat,
-        "mat_measures": measure(mat),
-        "surface": surface,
-        "domain": enclose(surface, EnclosureSettings()),
-        "mesh": mesh,
-        "mesh_measures": TetmeshMeasures(10, 20, 1e-15, 0.001, -0.01, 0.0, 0, 12.0, 2**27),
+    return (
+        mat,
+        measure(mat),
+        surface,
+        enclose(surface, EnclosureSettings()),
+        mesh,
+        TetmeshMeasures(10, 20, 1e-15, 0.001, -0.01, 0.0, 0),
+        MeshingCost(12.0, 2**27),
         # a limit that no mesh keeps: there are worst faces to show
-        "quality": judge(mesh, QualitySettings(non_orthogonality=5.0)),
-        "comparison": compare(mat, surface.solidity, 0.99 * surface.solidity, CASE.flow.flow()),
-        "manifests": {stage: manifest(stage) for stage in ("mat", "tetmesh", "export")},
-    }
+        judge(mesh, QualitySettings(non_orthogonality=5.0)),
+        compare(mat, surface.solidity, 0.99 * surface.solidity, CASE.flow.flow()),
+    )
 
 
-def whole(folder: Path = Path("runs/small"), **other: Any) -> ReportContent:
-    """Give all that a run can have but a solution; `other` replaces parts."""
-    return ReportContent(folder, CASE, **{**_parts(), **other})
+def whole(*others: object, folder: Path = Path("runs/small")) -> Results:
+    """Give all that a run can have but a solution; `others` replace nouns of their kind, or are added."""
+    made = {stage: manifest(stage) for stage in ("mat", "tetmesh", "export")}
+    return having(*_parts(), *others, folder=folder, made=made)
+
+
+def having(*nouns: object, folder: Path = Path("runs/small"), **other: Any) -> Results:
+    """Give a run that has just these nouns."""
+    return Results(CASE, folder, LINE, loaded={type(noun): noun for noun in nouns}, **other)

@@ -12,8 +12,7 @@ from pathlib import Path
 import pytest
 
 from pipeline.progress import silent
-from pipeline.report.page.page import filled
-from pipeline.report.page.sections import sections
+from pipeline.report.page.page import filled, sections
 from pipeline.report.views.render import Pictures
 from tests.report.contents import whole
 

@@ -2,36 +2,37 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-import dataclasses
 import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from pipeline.line.results import Results
+from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.fibers import Mat
+from pipeline.nouns.mat_measures import MatMeasures
+from pipeline.nouns.quality import QualityReport
 from pipeline.progress import silent
 from pipeline.quality.judge import judge
-from pipeline.report.page.content import ReportContent
-from pipeline.report.page.page import filled
-from pipeline.report.page.sections import sections
+from pipeline.report.page.page import filled, sections
 from pipeline.report.views.render import Pictures
-from tests.report.contents import CASE, SECTIONS, SOLUTION, whole
+from tests.report.contents import SECTIONS, SOLUTION, having, whole
 from tests.report.pages import Page, read
 from tests.sample_meshes import cylinder
 
 
 @pytest.fixture(scope="module")
-def content() -> ReportContent:
+def content() -> Results:
     return whole()
 
 
-def html_of(content: ReportContent, trouble: str = "") -> str:
+def html_of(content: Results, trouble: str = "") -> str:
     return filled(content, sections(content, silent), Pictures(trouble=trouble))
 
 
 @pytest.fixture(scope="module")
-def html(content: ReportContent) -> str:
+def html(content: Results) -> str:
     return html_of(content)
 
 
@@ -49,13 +50,13 @@ def test_a_whole_run_has_every_section(page: Page) -> None:
 
 
 def test_a_run_of_nothing_but_its_case_still_makes_a_page() -> None:
-    page = read(html_of(ReportContent(Path("runs/new"), CASE)))
+    page = read(html_of(having(folder=Path("runs/new"))))
     assert shown(page) == {"summary", "provenance"}
     assert any("not complete" in text for text in page.text)
 
 
-def test_a_mat_alone_has_its_measures_and_its_prediction(content: ReportContent) -> None:
-    alone = ReportContent(content.folder, CASE, mat=content.mat, mat_measures=content.mat_measures)
+def test_a_mat_alone_has_its_measures_and_its_prediction(content: Results) -> None:
+    alone = having(content.read(Mat), content.read(MatMeasures))
     assert shown(read(html_of(alone))) == {"summary", "mat", "prediction", "provenance"}
 
 
@@ -74,15 +75,12 @@ def test_nothing_on_the_page_comes_from_elsewhere(html: str) -> None:
     assert {"script", "iframe", "object"}.isdisjoint(read(html).tags)
 
 
-def test_what_a_stranger_wrote_is_text_and_nothing_else(content: ReportContent) -> None:
+def test_what_a_stranger_wrote_is_text_and_nothing_else(content: Results) -> None:
     evil = '<script>alert(1)</script><img src=x onerror="alert(2)">'
-    assert content.mat is not None
-    m = content.mat
+    m = content.read(Mat)
     mat = Mat(m.nodes, m.first, m.radius, m.slab, m.seed, evil, m.periodic)
-    manifests = {evil: {**content.manifests["mat"], "files": {evil: evil}, "libraries": {evil: evil}, "key": evil}}
-    changed = dataclasses.replace(
-        content, folder=Path(evil.replace("/", "")), mat=mat, manifests=manifests, left_out=(evil,)
-    )
+    made = {evil: {**content.made["mat"], "files": {evil: evil}, "libraries": {evil: evil}, "key": evil}}
+    changed = having(mat, folder=Path(evil.replace("/", "")), made=made, left_out=(evil,))
     page = read(html_of(changed, evil))
     assert "script" not in page.tags
     assert not page.values("onerror")
@@ -90,32 +88,31 @@ def test_what_a_stranger_wrote_is_text_and_nothing_else(content: ReportContent) 
     assert sum(text.count("alert(1)") for text in page.text) >= 8
 
 
-def test_each_metric_with_a_spread_has_its_histogram_and_its_worst_place(content: ReportContent, page: Page) -> None:
-    assert content.quality is not None
+def test_each_metric_with_a_spread_has_its_histogram_and_its_worst_place(content: Results, page: Page) -> None:
+    quality = content.read(QualityReport)
     drawn = {value for value in page.values("id") if re.fullmatch(r"metric-\w+-figure_1", value)}
     # every pyramid over a tetrahedron's face has a quarter of its volume: there is no histogram to draw
-    assert drawn == {f"metric-{name}-figure_1" for name in content.quality.metrics if name != "face_pyramid"}
-    worst = content.quality.metrics["non_orthogonality"].worst[0]
+    assert drawn == {f"metric-{name}-figure_1" for name in quality.metrics if name != "face_pyramid"}
+    worst = quality.metrics["non_orthogonality"].worst[0]
     assert any(f"face {worst[0]}" in text for text in page.text)
     assert f"{1e6 * worst[2][0]:.3f}" in page.text
 
 
-def test_a_solved_flow_is_held_against_every_model(content: ReportContent) -> None:
-    page = read(html_of(dataclasses.replace(content, solution=SOLUTION)))
-    assert content.comparison is not None
-    davies = content.comparison.models["davies"].mesh
+def test_a_solved_flow_is_held_against_every_model(content: Results) -> None:
+    page = read(html_of(whole(SOLUTION)))
+    davies = content.read(Comparison).models["davies"].mesh
     assert f"{davies / SOLUTION.pressure_drop - 1:+.1%}" in page.text
     assert "solution" in page.values("id")
 
 
-def test_a_page_without_pictures_says_why(content: ReportContent) -> None:
-    page = read(html_of(ReportContent(content.folder, CASE), "no OpenGL, said a test"))
+def test_a_page_without_pictures_says_why(content: Results) -> None:
+    page = read(html_of(having(), "no OpenGL, said a test"))
     assert "no-pictures" in page.values("id")
     assert any("no OpenGL, said a test" in text for text in page.text)
     assert "img" not in page.tags
 
 
-def test_equal_runs_make_equal_pages(content: ReportContent, html: str) -> None:
+def test_equal_runs_make_equal_pages(content: Results, html: str) -> None:
     assert html_of(content) == html
 
 
@@ -125,18 +122,17 @@ def test_charts_take_the_ink_of_the_page(html: str) -> None:
     assert "#000000" not in html.split("</style>", 1)[1]
 
 
-def test_fibers_of_many_diameters_are_told_with_their_spread(content: ReportContent) -> None:
-    assert content.mat is not None
-    m = content.mat
+def test_fibers_of_many_diameters_are_told_with_their_spread(content: Results) -> None:
+    m = content.read(Mat)
     radius = np.linspace(0.5e-6, 0.7e-6, m.fibers)
     mixed = Mat(m.nodes, m.first, radius, m.slab, -1, "by hand", m.periodic)
-    html = html_of(ReportContent(content.folder, CASE, mat=mixed))
+    html = html_of(having(mixed))
     assert "nobody drew these fibers" in html
 
 
-def test_a_run_of_hexahedra_says_so_and_has_their_histograms(content: ReportContent) -> None:
+def test_a_run_of_hexahedra_says_so_and_has_their_histograms(content: Results) -> None:
     mesh = cylinder(0.1, 0.7e-6, around=6, outward=4, turns=1)
-    page = read(html_of(dataclasses.replace(content, mesh=mesh, quality=judge(mesh))))
+    page = read(html_of(whole(mesh, judge(mesh))))
     assert f"{mesh.cells:,} hexahedra" in page.text
     assert not re.search(r"\d tetrahedra", " ".join(page.text))
     # pyramids over the faces of a hexahedron differ: there is a histogram to draw

@@ -12,21 +12,23 @@ from PIL import Image
 
 from pipeline.geometry.cells import cell_faces, polygons_of
 from pipeline.nouns.arrays import Floats
+from pipeline.nouns.domain import FluidDomain
+from pipeline.nouns.fibers import Mat
 from pipeline.nouns.mesh import FaceMesh, Patch
 from pipeline.nouns.patches import FIBERS
-from pipeline.report.page.page import subject_of, write_report
+from pipeline.report.page.page import write_report
 from pipeline.report.views.drawing import BACKGROUND
 from pipeline.report.views.mesh_scenes import MeshSubject
 from pipeline.report.views.painter import possible, trimmed
 from pipeline.report.views.render import Painting, rendering_environment
 from pipeline.report.views.scenes import SCENES, Subject, fibers_of_faces
+from pipeline.report.views.subject import subject_of
 from tests.report.contents import whole
 from tests.report.pages import read
 
 
 def test_a_mat_alone_can_be_seen_from_above_and_from_the_side() -> None:
-    mat = whole().mat
-    assert mat is not None
+    mat = whole().read(Mat)
     assert possible(Subject(mat)) == ("mat-top", "mat-side")
 
 
@@ -38,9 +40,7 @@ def test_everything_can_be_seen_of_a_whole_run() -> None:
 
 def test_every_wall_of_the_mesh_gets_the_fiber_it_lies_on() -> None:
     content = whole()
-    mesh, domain = content.mesh, content.domain
-    assert mesh is not None
-    assert domain is not None
+    mesh, domain = content.read(FaceMesh), content.read(FluidDomain)
     faces = mesh.triangles()[mesh.patch(FIBERS)]
     found = fibers_of_faces(mesh, domain)
     wall = domain.patch == domain.patches.index(FIBERS)
@@ -85,8 +85,7 @@ def test_where_nothing_can_be_rendered_the_page_is_made_without_pictures(
 
 
 def test_a_mistake_in_a_scene_is_told_and_not_hidden(tmp_path: Path) -> None:
-    mat = whole().mat
-    assert mat is not None
+    mat = whole().read(Mat)
     with Painting(Subject(mat), ("no-such-scene",)) as painting:
         assert "KeyError: 'no-such-scene'" in painting.finished().trouble
 
@@ -102,8 +101,6 @@ def test_without_a_screen_vtk_is_told_so(monkeypatch: pytest.MonkeyPatch) -> Non
 
 @pytest.mark.usefixtures("rendering")
 def test_hexahedra_are_cut_without_holes() -> None:
-    content = whole()
-    assert content.mat is not None
     # a mesh without a hole, as large as the mat is: every pixel of its section is a cell
     corners = np.stack(np.meshgrid(*[np.arange(6)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     steps = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])

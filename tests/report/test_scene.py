@@ -15,13 +15,14 @@ from pipeline.geometry.triangles import enclosed_volume
 from pipeline.nouns.fibers import Mat
 from pipeline.nouns.mesh import FaceMesh, Patch
 from pipeline.nouns.patches import FIBERS
+from pipeline.nouns.surface import Surface
 from pipeline.quality.judge import judge
 from pipeline.quality.settings import QualitySettings
-from pipeline.report.page.content import MeshContent, ReportContent
+from pipeline.report.page.content import MeshContent
 from pipeline.report.views.drawing import PALETTE
 from pipeline.report.views.layers import Layer, layers_of_mesh, layers_of_run, limited
 from pipeline.report.views.scene_file import scene_of, write_scene
-from tests.report.contents import CASE, whole
+from tests.report.contents import having, whole
 from tests.report.devtools import CHROMIUM, Browser
 from tests.report.pages import read
 from tests.sample_meshes import duct
@@ -188,18 +189,16 @@ def test_names_of_strangers_stay_text_in_a_scene() -> None:
 
 def test_the_fibers_of_a_run_are_those_of_its_mesh() -> None:
     content = whole()
-    assert content.mesh is not None
-    fibers = layers_of_run(content).layers[0]
-    assert len(fibers.triangles) == content.mesh.patch(FIBERS).stop - content.mesh.patch(FIBERS).start
-    surface = ReportContent(content.folder, CASE, mat=content.mat, surface=content.surface)
-    assert content.surface is not None
-    np.testing.assert_array_equal(layers_of_run(surface).layers[0].triangles, content.surface.triangles)
+    walls = content.read(FaceMesh).patch(FIBERS)
+    assert len(layers_of_run(content).layers[0].triangles) == walls.stop - walls.start
+    surface = content.read(Surface)
+    alone = having(content.read(Mat), surface)
+    np.testing.assert_array_equal(layers_of_run(alone).layers[0].triangles, surface.triangles)
 
 
 def test_a_mat_alone_is_tubes_of_its_fibers_volume() -> None:
-    mat = whole().mat
-    assert mat is not None
-    layer = layers_of_run(ReportContent(Path("x"), CASE, mat=mat)).layers[0]
+    mat = whole().read(Mat)
+    layer = layers_of_run(having(mat)).layers[0]
     assert set(layer.number.tolist()) == set(range(mat.fibers))
     # 16-gons in circles of the fibers' radius, by the area of the polygon; bends cost a little
     polygon = 16 * 0.5 * np.sin(2 * np.pi / 16) * mat.radius[0] ** 2
@@ -211,9 +210,8 @@ def volume(layer: Layer) -> float:
 
 
 def test_too_many_triangles_are_thinned_out_and_the_page_says_so() -> None:
-    mat: Mat | None = whole().mat
-    assert mat is not None
-    layer = layers_of_run(ReportContent(Path("x"), CASE, mat=mat)).layers[0]
+    mat = whole().read(Mat)
+    layer = layers_of_run(having(mat)).layers[0]
     assert limited([layer], {}, largest=len(layer.triangles)).note == f"{len(layer.triangles):,} triangles"
     thin = limited([layer], {}, largest=len(layer.triangles) // 3)
     kept = len(thin.layers[0].triangles)

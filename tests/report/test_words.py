@@ -6,6 +6,7 @@ import dataclasses
 
 import pytest
 
+from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.quality import QualityReport
 from pipeline.report.page.words import BAD, GOOD, NOTE, checks, steps, verdict
 from tests.report.contents import SOLUTION, whole
@@ -17,34 +18,33 @@ def report(verdict: str, *reasons: str) -> QualityReport:
 
 @pytest.mark.parametrize(("word", "mark"), [("pass", GOOD), ("warn", NOTE), ("fail", BAD)])
 def test_the_verdict_of_the_mesh_is_the_verdict_of_the_page(word: str, mark: str) -> None:
-    content = whole(quality=report(word, "skewness: 3 faces above 4"))
-    assert verdict(content.quality)[0] == mark
+    content = whole(report(word, "skewness: 3 faces above 4"))
+    assert verdict(content.get(QualityReport))[0] == mark
     first = checks(content)[0]
     assert first.mark == mark
     assert "Skewness: 3 faces above 4." in first.sentence
 
 
 def test_a_bad_mesh_is_to_be_mended_first() -> None:
-    assert "tetmesh" in steps(whole(quality=report("fail")))[0].command
-    assert "tetmesh" not in steps(whole(quality=report("pass")))[0].command
+    assert "tetmesh" in steps(whole(report("fail")))[0].command
+    assert "tetmesh" not in steps(whole(report("pass")))[0].command
 
 
 def test_a_mesh_that_lost_more_volume_than_the_case_allows_is_told() -> None:
     content = whole()
-    assert content.comparison is not None
     # the case allows 2 %; this mesh has lost 10
-    thin = dataclasses.replace(content.comparison, solidity={"nominal": 0.1, "surface": 0.1, "mesh": 0.09})
-    marks = {check.title: check.mark for check in checks(whole(comparison=thin))}
+    thin = dataclasses.replace(content.read(Comparison), solidity={"nominal": 0.1, "surface": 0.1, "mesh": 0.09})
+    marks = {check.title: check.mark for check in checks(whole(thin))}
     assert marks["what meshing costs"] == BAD
     marks = {check.title: check.mark for check in checks(content)}
     assert marks["what meshing costs"] == GOOD
 
 
 def test_a_solution_that_has_not_settled_is_not_trusted() -> None:
-    marks = {check.title: check.mark for check in checks(whole(solution=SOLUTION))}
+    marks = {check.title: check.mark for check in checks(whole(SOLUTION))}
     assert marks["the solution has settled"] == GOOD
     unsettled = dataclasses.replace(SOLUTION, converged=False, force_balance_error=0.2)
-    marks = {check.title: check.mark for check in checks(whole(solution=unsettled))}
+    marks = {check.title: check.mark for check in checks(whole(unsettled))}
     assert marks["the solution has not settled"] == BAD
     assert marks["balance of forces and of mass"] == NOTE
 

@@ -122,7 +122,7 @@ def test_the_stages_are_kept_only_where_asked_for(study: Study, here: list[Task]
     assert not list((tmp_path / "numbers" / "work").iterdir())
     everything = study.model_copy(update={"keep": "everything"})
     carry_out_study(everything, tmp_path / "all")
-    mat = Run.opened(here[-1].work).mat
+    mat = Run.opened(here[-1].work).read(Mat)
     assert isinstance(mat, Mat)
     assert measure(mat).solidity == pytest.approx(read_json(here[-1].result / "result.json")["mat"]["solidity"])
 

@@ -2,21 +2,11 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-from dataclasses import dataclass
-
 from pipeline.analytics.models.comparison import REFERENCE
 from pipeline.analytics.models.prediction import Prediction
 from pipeline.analytics.models.pressure_models import MODELS
 from pipeline.nouns.comparison import Comparison
-
-
-@dataclass(frozen=True, slots=True)
-class Table:
-    """A title, column heads, and rows of as many cells."""
-
-    title: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
+from pipeline.nouns.section import Table
 
 
 def length(value: float) -> str:

@@ -2,8 +2,6 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from pipeline.errors import StageError
@@ -13,49 +11,15 @@ from pipeline.mesh.engines.raw import RawMesh
 from pipeline.mesh.improve.fit import fitted
 from pipeline.mesh.improve.settle import free_axes, settled
 from pipeline.mesh.settings import TetmeshSettings
-from pipeline.mesh.wall_error import Fidelity
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import FaceMesh, TetMesh
+from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.nouns.patches import FIBERS
 from pipeline.progress import Progress
 
 _FITS = 2  # the second makes good what mending after the first moved
 _SLIDE = 0.2  # edges that it may move a vertex along its fiber
-
-
-@dataclass(frozen=True, slots=True)
-class TetmeshMeasures:
-    """What the mesher made of the fibers.
-
-    Parameters
-    ----------
-    points, cells : int
-    fluid_volume : float [m3]
-    volume_error : float [-]
-        Solid volume in the duct, mesh against surface, relative.
-    raw_volume_error : float [-]
-        The same as the engine left it, before the fibers' points were moved.
-    filled_volume : float [-]
-        Share of the air, in the tips of crevices, that was given to the fibers.
-    faulty_cells : int
-        Cells still beyond what mending aims at, a little inside the usual limits.
-    mesher_seconds : float [s]
-    mesher_peak_memory : int [byte]
-    fidelity : Fidelity, optional
-        How far the walls stand off the true fibers; every finished stage has it.
-    """
-
-    points: int
-    cells: int
-    fluid_volume: float
-    volume_error: float
-    raw_volume_error: float
-    filled_volume: float
-    faulty_cells: int
-    mesher_seconds: float
-    mesher_peak_memory: int
-    fidelity: Fidelity | None = None
 
 
 def finished(

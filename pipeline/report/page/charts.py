@@ -9,11 +9,11 @@ from markupsafe import Markup
 
 from pipeline.analytics.settings import FilterSettings, FlowSettings
 from pipeline.analytics.tables.plots import draw_efficiency, draw_figure_of_merit, draw_pressure_drop
-from pipeline.mat.measures import MatMeasures
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.fibers import Mat
 from pipeline.nouns.flow import Solution
+from pipeline.nouns.mat_measures import MatMeasures
 from pipeline.nouns.quality import Metric
 from pipeline.quality.table import shown_unit
 from pipeline.report.page.svg import BLUE, GREEN, INK, ORANGE, RED, chart

@@ -9,7 +9,7 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from pipeline.analytics.tables.rows import Table
+from pipeline.nouns.section import Table
 from pipeline.report.page.words import Check, Step
 from pipeline.report.views.render import Pictures
 
@@ -63,13 +63,15 @@ def page_of(
 def templates() -> jinja2.Environment:
     """Give the templates of all pages; what is not given to one is an error, and not an empty place."""
     environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("pipeline.report"),
+        loader=jinja2.PackageLoader("pipeline.report.page"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
     environment.globals["table"] = table_html
+    environment.filters["kind"] = lambda part: type(part).__name__
+    environment.filters["drawing"] = Markup
     environment.filters["typeset"] = typeset
     return environment
 

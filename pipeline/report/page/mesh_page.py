@@ -15,14 +15,14 @@ from pipeline.quality.kinds import kinds_in_words
 from pipeline.report.page import words
 from pipeline.report.page.content import MeshContent
 from pipeline.report.page.html import page_of
-from pipeline.report.page.page import places_of_trouble
+from pipeline.report.page.provenance import settings_rows, versions
 from pipeline.report.page.quality_section import quality_section, unit_of
-from pipeline.report.page.sections import settings_rows, versions
 from pipeline.report.page.words import NOTE, Check, Step
 from pipeline.report.views.drawing import colors_by_number
 from pipeline.report.views.mesh_scenes import MeshSubject, axis_of_sections
 from pipeline.report.views.painter import possible
 from pipeline.report.views.render import Painting, Pictures
+from pipeline.report.views.subject import places_of_trouble
 
 
 def write_mesh_page(content: MeshContent, path: Path, progress: Progress = silent) -> None:
@@ -67,7 +67,7 @@ def mesh_sections(content: MeshContent, progress: Progress = silent) -> dict[str
                 for patch, color in zip(mesh.patches, colors, strict=True)
             ],
         },
-        "quality": quality_section(quality, mesh),
+        "quality": quality_section(quality, mesh, "worst-places"),
         "provenance": {
             "versions": versions(),
             "files": [{"path": file.path, "size": f"{file.size:,}", "digest": file.digest} for file in content.files],

@@ -3,30 +3,33 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-
-from pipeline.nouns.arrays import Floats
+from pipeline.line.results import Results
+from pipeline.nouns.comparison import Comparison
+from pipeline.nouns.fibers import Mat
+from pipeline.nouns.flow import Solution
+from pipeline.nouns.mat_measures import MatMeasures
+from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.quality import QualityReport
+from pipeline.nouns.section import Section
+from pipeline.nouns.surface import Surface
 from pipeline.progress import Progress, silent
 from pipeline.report.page import words
-from pipeline.report.page.content import ReportContent
 from pipeline.report.page.html import page_of
-from pipeline.report.page.sections import sections, tiles
+from pipeline.report.page.provenance import provenance
 from pipeline.report.views.painter import possible
 from pipeline.report.views.render import Painting, Pictures
-from pipeline.report.views.scenes import Subject
+from pipeline.report.views.subject import subject_of
 
 PAGE = "report.html"
 
 
-def write_report(content: ReportContent, folder: Path, progress: Progress = silent) -> Path:
+def write_report(content: Results, folder: Path, progress: Progress = silent) -> Path:
     """Write ``report.html``: every section for which the run has the results, none for what it has not.
 
     Parameters
     ----------
-    content : ReportContent
+    content : Results
     folder : Path
         Where the page goes; made if it is not there.
     progress : Progress
@@ -43,22 +46,7 @@ def write_report(content: ReportContent, folder: Path, progress: Progress = sile
     return path
 
 
-def subject_of(content: ReportContent) -> Subject | None:
-    """Give what there is to draw; None before there is a mat."""
-    if content.mat is None:
-        return None
-    return Subject(content.mat, content.surface, content.domain, content.mesh, places_of_trouble(content.quality))
-
-
-def places_of_trouble(report: QualityReport | None) -> Floats | None:
-    """Where the worst cells and faces beyond a limit are, (n, 3) array [m]; None where there are none."""
-    if report is None:
-        return None
-    places = [place for metric in report.metrics.values() for _, _, place in metric.worst[: metric.over_limit]]
-    return np.array(places) if places else None
-
-
-def _page(content: ReportContent, progress: Progress) -> str:
+def _page(content: Results, progress: Progress) -> str:
     subject = subject_of(content)
     if subject is None:
         return filled(content, sections(content, progress), Pictures())
@@ -70,23 +58,57 @@ def _page(content: ReportContent, progress: Progress) -> str:
     return filled(content, made, pictures)
 
 
-def filled(content: ReportContent, made: dict[str, Any], pictures: Pictures) -> str:
+def sections(content: Results, progress: Progress = silent) -> tuple[Section, ...]:
+    """Make the section of each stage that has one and for which the run has the results."""
+    shown = [stage for stage in content.line if stage.section is not None]
+    made = []
+    for number, stage in enumerate(shown):
+        progress(f"report: section of {stage.name}", 0.1 + 0.5 * number / len(shown))
+        assert stage.section is not None
+        made.append(stage.section(content))
+    return tuple(section for section in made if section is not None)
+
+
+def filled(content: Results, made: tuple[Section, ...], pictures: Pictures) -> str:
     """Fill the template with the content of a run.
 
     Parameters
     ----------
-    content : ReportContent
-    made : dict
-        What `pipeline.report.page.sections.sections` made of it.
+    content : Results
+    made : tuple of Section
     pictures : Pictures
     """
     return page_of(
         "report.html.jinja",
-        words.verdict(content.quality),
+        words.verdict(content.get(QualityReport)),
         tiles(content),
         words.checks(content),
         words.steps(content),
         pictures,
         name=content.name,
-        **made,
+        sections=made,
+        provenance=provenance(content),
     )
+
+
+def tiles(content: Results) -> list[tuple[str, str]]:
+    """Give the figures that stand above everything else, as (what, value)."""
+    mat, surface, mesh = content.get(Mat), content.get(Surface), content.get(FaceMesh)
+    measures, comparison, solution = content.get(MatMeasures), content.get(Comparison), content.get(Solution)
+    found = []
+    if mat is not None:
+        x, y, z = (1e6 * size for size in mat.slab.size)
+        found += [("mat", f"{x:.4g} × {y:.4g} × {z:.3g} µm"), ("fibers", f"{mat.fibers:,}")]
+    if comparison is not None:
+        found.append(("solidity of the mesh", f"{comparison.solidity['mesh']:.2%}"))
+    elif surface is not None:
+        found.append(("solidity of the surface", f"{surface.solidity:.2%}"))
+    elif measures is not None:
+        found.append(("nominal solidity", f"{measures.solidity:.2%}"))
+    if mesh is not None:
+        found.append(("cells", f"{mesh.cells:,}"))
+    if solution is not None:
+        found.append(("pressure drop, CFD", f"{solution.pressure_drop:.3g} Pa"))
+    if comparison is not None and "davies" in comparison.models:
+        found.append(("pressure drop, Davies", words.finite(comparison.models["davies"].mesh, "Pa")))
+    return found

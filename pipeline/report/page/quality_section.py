@@ -4,14 +4,14 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from pipeline.analytics.tables.rows import Table
+from pipeline.line.results import Results
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.quality import Metric, QualityReport
+from pipeline.nouns.section import Charts, Columns, Heading, Part, Picture, Section, Table, Text
 from pipeline.quality.judge import measure
 from pipeline.quality.table import HEADER, rows, shown_unit, summary
 from pipeline.report.page import charts
@@ -46,7 +46,13 @@ def unit_for(extent: float) -> LengthUnit:
     return next((unit for unit in _UNITS if extent * unit.per_meter >= 2.0), MICROMETER)
 
 
-def quality_section(report: QualityReport, mesh: FaceMesh | None) -> dict[str, Any]:
+def section(content: Results) -> Section | None:
+    """Show how good the cells of a run are."""
+    report = content.get(QualityReport)
+    return quality_section(report, content.get(FaceMesh), "worst") if report is not None else None
+
+
+def quality_section(report: QualityReport, mesh: FaceMesh | None, view: str) -> Section:
     """Make the section: the verdict, the table, a histogram per metric, and where the worst are.
 
     Parameters
@@ -54,23 +60,40 @@ def quality_section(report: QualityReport, mesh: FaceMesh | None) -> dict[str, A
     report : QualityReport
     mesh : FaceMesh, optional
         Without it there are no histograms.
+    view : str
+        The view that shows the worst places.
     """
     values: Mapping[str, Floats] = measure(mesh) if mesh is not None else {}
     unit = unit_of(mesh) if mesh is not None else MICROMETER
-    return {
-        "summary": summary(report),
-        "reasons": report.reasons,
-        "table": Table("", HEADER, tuple(rows(report))),
-        "charts": [
-            drawn
-            for name, metric in report.metrics.items()
-            if name in values and (drawn := charts.metric_histogram(metric, values[name])) is not None
-        ],
-        "worst": Table(
-            "", ("metric", "where", "limit", "value", *(f"{axis} [{unit.name}]" for axis in "xyz")),
-            tuple(line for metric in report.metrics.values() for line in _worst_rows(metric, unit)),
+    drawn = [
+        chart
+        for name, metric in report.metrics.items()
+        if name in values and (chart := charts.metric_histogram(metric, values[name])) is not None
+    ]
+    mark = {"pass": "good", "warn": "note"}.get(report.verdict, "bad")
+    worst = Table(
+        "", ("metric", "where", "limit", "value", *(f"{axis} [{unit.name}]" for axis in "xyz")),
+        tuple(line for metric in report.metrics.values() for line in _worst_rows(metric, unit)),
+    )  # fmt: skip
+    parts: tuple[Part, ...] = (
+        Text(f"{summary(report)}."),
+        *(Text(reason, mark) for reason in report.reasons),
+        Table("", HEADER, tuple(rows(report))),
+        Charts(tuple(drawn)),
+        Text(
+            "Counts on a logarithmic scale, so that single cells show; the red line is the limit, left out where it "
+            "lies far off.",
+            "soft",
         ),
-    }  # fmt: skip
+        Heading("Where the worst are"),
+        Columns(
+            (
+                (Picture(view, "Places of the worst cells and faces beyond a limit, up to five for each metric."),),
+                (worst,),
+            )
+        ),
+    )
+    return Section("quality", "Quality", "Quality of the mesh", parts)
 
 
 def _worst_rows(metric: Metric, length: LengthUnit) -> Iterator[tuple[str, ...]]:

@@ -7,11 +7,13 @@ import shlex
 from dataclasses import dataclass
 
 from pipeline.analytics.tables.rows import length
+from pipeline.line.results import Results
 from pipeline.mat.settings import LayeredSettings
 from pipeline.nouns.comparison import Comparison
+from pipeline.nouns.fibers import Mat
 from pipeline.nouns.flow import Solution
+from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.quality import QualityReport
-from pipeline.report.page.content import ReportContent
 
 GOOD, NOTE, BAD = "good", "note", "bad"
 _FLUX_ERROR = 0.01
@@ -35,7 +37,7 @@ class Step:
     command: str = ""
 
 
-def checks(content: ReportContent) -> list[Check]:
+def checks(content: Results) -> list[Check]:
     """Judge everything that is there."""
     found = []
     if content.left_out:
@@ -46,16 +48,18 @@ def checks(content: ReportContent) -> list[Check]:
                 f"{', '.join(content.left_out)}: made from another case, or before an earlier stage was made again.",
             )
         )
-    if content.quality is not None:
-        found.append(cells(content.quality))
-    if content.comparison is not None:
-        found += _solidities(content, content.comparison)
-    if content.mat is not None:
-        found.append(_piece(content))
-    if content.comparison is not None:
-        found += _models(content.comparison, content.solution)
-    if content.solution is not None:
-        found += _solver(content.solution)
+    quality, comparison, mat = content.get(QualityReport), content.get(Comparison), content.get(Mat)
+    solution = content.get(Solution)
+    if quality is not None:
+        found.append(cells(quality))
+    if comparison is not None:
+        found += _solidities(content, comparison)
+    if mat is not None:
+        found.append(_piece(mat))
+    if comparison is not None:
+        found += _models(comparison, solution)
+    if solution is not None:
+        found += _solver(solution)
     return found
 
 
@@ -84,7 +88,7 @@ def cells(report: QualityReport) -> Check:
     return Check(mark, title, " ".join([words, *(f"{text[:1].upper()}{text[1:]}." for text in report.reasons)]))
 
 
-def _solidities(content: ReportContent, c: Comparison) -> list[Check]:
+def _solidities(content: Results, c: Comparison) -> list[Check]:
     meshing, overlap = c.attribution.get("meshing", 0.0), c.attribution.get("overlap", 0.0)
     kept = c.solidity["mesh"] / c.solidity["surface"] - 1.0
     # the case says how much of the fibers' volume the mesh may lose
@@ -108,20 +112,19 @@ def _solidities(content: ReportContent, c: Comparison) -> list[Check]:
     ]
 
 
-def _clearance(content: ReportContent, overlap: float, allowed: float) -> str:
+def _clearance(content: Results, overlap: float, allowed: float) -> str:
     mat = content.case.mat
     overlapping = isinstance(mat, LayeredSettings) and mat.contact == "paper"
     return ' With mat.contact = "clear" fibers touch but do not overlap.' if overlapping and overlap < -allowed else ""
 
 
-def _piece(content: ReportContent) -> Check:
-    assert content.mat is not None
-    side = min(content.mat.slab.size[:2])
-    diameter = 2.0 * float(content.mat.radius.mean())
+def _piece(mat: Mat) -> Check:
+    side = min(mat.slab.size[:2])
+    diameter = 2.0 * float(mat.radius.mean())
     return Check(
         NOTE,
         "how large a piece this is",
-        f"The face is {length(side)} wide, {side / diameter:.0f} fiber diameters, with {content.mat.fibers:,} fibers. "
+        f"The face is {length(side)} wide, {side / diameter:.0f} fiber diameters, with {mat.fibers:,} fibers. "
         "How much another piece of the same medium differs only other seeds can tell: --set mat.seed=2.",
     )
 
@@ -170,13 +173,14 @@ def _solver(solution: Solution) -> list[Check]:
     ]
 
 
-def steps(content: ReportContent) -> list[Step]:
+def steps(content: Results) -> list[Step]:
     """Say what to do next."""
     folder = shlex.quote(str(content.folder))
+    quality, comparison = content.get(QualityReport), content.get(Comparison)
     found = []
-    if content.comparison is None or content.mesh is None:
+    if comparison is None or content.get(FaceMesh) is None:
         found.append(Step("This run is not complete; the same command goes on.", f"fibertwin run CASE --out {folder}"))
-    if content.quality is not None and content.quality.verdict == "fail":
+    if quality is not None and quality.verdict == "fail":
         mesh = content.case.tetmesh
         overrides = "".join(f" --set {shlex.quote(override)}" for override in mesh.mesher.better(mesh))
         found.append(
@@ -186,17 +190,17 @@ def steps(content: ReportContent) -> list[Step]:
                 f"fibertwin run CASE --out {folder}{overrides}",
             )
         )
-    exported = content.manifests.get("export", {}).get("counts", {}).get("formats", ())
-    if "openfoam" in exported and content.solution is None:
+    exported = content.manifests().get("export", {}).get("counts", {}).get("formats", ())
+    if "openfoam" in exported and content.get(Solution) is None:
         found.append(Step("Solve the flow with OpenFOAM.", f"cd {folder}/export/openfoam && ./Allrun"))
-    if content.mat is not None:
+    if content.get(Mat) is not None:
         found.append(Step("Turn the geometry and the mesh in a window.", f"fibertwin view {folder}"))
         found.append(
             Step("Send them as one file that turns in any browser.", f"fibertwin view {folder} --html scene.html")
         )
     if "vtk" in exported:
         found.append(Step("Open all fields in ParaView.", f"paraview {folder}/export/vtk/mesh.vtm"))
-    if content.comparison is not None:
+    if comparison is not None:
         found.append(
             Step(
                 "Ask the models for other particles or velocities.",

@@ -10,11 +10,14 @@ import numpy as np
 from pipeline.analytics.tables.rows import length
 from pipeline.geometry.box import Box
 from pipeline.geometry.sections import fan, section
+from pipeline.line.results import Results
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
+from pipeline.nouns.fibers import Mat
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.patches import FIBERS, INLET, OUTLET
-from pipeline.report.page.content import MeshContent, ReportContent
+from pipeline.nouns.surface import Surface
+from pipeline.report.page.content import MeshContent
 from pipeline.report.views import drawing
 from pipeline.report.views.drawing import near_the_middle
 from pipeline.report.views.mesh_scenes import axis_of_sections
@@ -68,21 +71,21 @@ class Model:
     note: str
 
 
-def layers_of_run(content: ReportContent) -> Model:
+def layers_of_run(content: Results) -> Model:
     """Give what a run has: its fibers, the patches of its duct, and a section of its cells.
 
     The content must have a mat at least.
     """
-    assert content.mat is not None
+    mat, mesh, domain = content.read(Mat), content.get(FaceMesh), content.get(FluidDomain)
     layers = [_fibers(content)]
-    if content.mesh is not None:
-        layers += _patches(content.mesh, {FIBERS})
-        layers.append(_section(content.mesh, 0, content.mat.slab))
-    elif content.domain is not None:
-        layers += _sides(content.domain)
-    outlines = {"slab of the mat": content.mat.slab}
-    if content.domain is not None:
-        outlines["duct"] = content.domain.box
+    if mesh is not None:
+        layers += _patches(mesh, {FIBERS})
+        layers.append(_section(mesh, 0, mat.slab))
+    elif domain is not None:
+        layers += _sides(domain)
+    outlines = {"slab of the mat": mat.slab}
+    if domain is not None:
+        outlines["duct"] = domain.box
     return limited(layers, outlines)
 
 
@@ -129,19 +132,17 @@ def _merged(layer: Layer, cell: float) -> Layer:
     )
 
 
-def _fibers(content: ReportContent) -> Layer:
+def _fibers(content: Results) -> Layer:
     name, label = "fibers", "fiber"
-    if content.mesh is not None and content.domain is not None:
-        mesh = content.mesh
+    mesh, domain, surface = content.get(FaceMesh), content.get(FluidDomain), content.get(Surface)
+    if mesh is not None and domain is not None:
         which = mesh.patch(FIBERS)
-        faces = fibers_of_faces(mesh, content.domain)
+        faces = fibers_of_faces(mesh, domain)
         points, triangles, edges, face = fan(mesh.points, mesh.corners, mesh.offsets[which.start : which.stop + 1])
         return Layer(name, points, triangles, edges, faces[face], label=label)
-    surface = content.surface
     if surface is not None:
         return Layer(name, surface.points, surface.triangles, _all_edges(surface.triangles), surface.fiber, label=label)
-    assert content.mat is not None
-    points, triangles, fiber = tubes_of(content.mat)
+    points, triangles, fiber = tubes_of(content.read(Mat))
     return Layer(name, points, triangles, _all_edges(triangles), fiber, label=label)
 
 

@@ -45,7 +45,7 @@ def write_scene(model: Model, title: str, path: Path, flow: bool = True) -> None
 
 def scene_of(model: Model, title: str, flow: bool = True) -> str:
     """Give the scene as text; title and names are escaped, and no script may run but the one whose hash is named."""
-    script = files("pipeline.report").joinpath("templates/scene.js").read_text(encoding="utf-8")
+    script = files("pipeline.report.page").joinpath("templates/scene.js").read_text(encoding="utf-8")
     hashed = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     low, high = _bounds(model)
     unit = unit_for(float((high - low).max()))

@@ -16,9 +16,9 @@ The schemes are the ones whose error vanishes with the mesh spacing on tetrahedr
 from pipeline.export.settings import Dialect
 from pipeline.nouns.flow import Flow
 from pipeline.nouns.patches import FIBERS, INLET, OUTLET
+from pipeline.openfoam.environment import SOLVER
 from pipeline.openfoam.foam_file import format_dictionary, format_header
 
-SOLVER: dict[Dialect, str] = {"com": "simpleFoam", "org": "foamRun"}
 """Program that runs the case; OpenFOAM.org has had one for all solvers since its version 11."""
 
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from pipeline.mesh.engines.engine import Engine, EngineSettings
 
 if TYPE_CHECKING:
-    from pipeline.mesh.improve.finish import TetmeshMeasures
     from pipeline.mesh.settings import TetmeshSettings
     from pipeline.nouns.domain import FluidDomain
     from pipeline.nouns.mesh import FaceMesh
+    from pipeline.nouns.mesh_measures import TetmeshMeasures
     from pipeline.progress import Progress
 
 

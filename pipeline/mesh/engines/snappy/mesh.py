@@ -21,11 +21,11 @@ from pipeline.mesh.engines.snappy.case import write_case
 from pipeline.mesh.engines.snappy.engine import SnappySettings
 from pipeline.mesh.engines.snappy.fit import fitted
 from pipeline.mesh.engines.snappy.running import run_case
-from pipeline.mesh.improve.finish import TetmeshMeasures
 from pipeline.mesh.settings import TetmeshSettings
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.nouns.patches import FIBERS, PATCHES
 from pipeline.openfoam.read import read_openfoam
 from pipeline.progress import Progress, silent

@@ -1,0 +1,28 @@
+"""Compare the models' pressure drops from the nominal, the surface's and the mesh's solidity."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pipeline.analytics.models.comparison import compare
+from pipeline.geometry.tets import volume_between
+from pipeline.line import store
+from pipeline.nouns.fibers import Mat
+from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.surface import Surface
+from pipeline.progress import Progress
+
+if TYPE_CHECKING:
+    from pipeline.line.results import Results
+    from pipeline.line.stage import Counts
+
+
+def make(results: "Results", into: Path, progress: Progress) -> "Counts":
+    """Ask every model."""
+    mat = results.read(Mat)
+    air = volume_between(*results.read(FaceMesh).boundary(), mat.slab.lower[2], mat.slab.upper[2])
+    solidity = 1.0 - air / mat.slab.volume
+    comparison = compare(mat, results.read(Surface).solidity, solidity, results.case.flow.flow())
+    store.write_json(into / "comparison.json", comparison)
+    return {"mesh_solidity": comparison.solidity["mesh"]}

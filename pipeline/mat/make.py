@@ -1,0 +1,41 @@
+"""Make the mat that a case asks for, measure it, and keep both."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pipeline.analytics.models.growth import Predictor, predictor
+from pipeline.line import store
+from pipeline.mat.exchange import write_fibers
+from pipeline.mat.generate import generate
+from pipeline.mat.measures import measure
+from pipeline.mat.settings import BoxSettings, LayeredSettings
+from pipeline.mat.tally import report_stop
+from pipeline.progress import Progress
+
+if TYPE_CHECKING:
+    from pipeline.line.results import Results
+    from pipeline.line.stage import Counts
+
+
+def make(results: "Results", into: Path, progress: Progress) -> "Counts":
+    """Draw the fibers."""
+    settings, predict = results.case.mat, mat_predictor(results.case)
+    mat = generate(settings, predict, progress)
+    measures = measure(mat)
+    store.save(mat, into / "mat.npz")
+    store.write_json(into / "measures.json", measures)
+    write_fibers(mat, into / "fibers.csv")
+    counts: Counts = {"fibers": mat.fibers, "segments": mat.segments}
+    if isinstance(settings, LayeredSettings | BoxSettings):
+        stop = report_stop(settings.stop, measures, predict)
+        store.write_json(into / "stop.json", stop)
+        counts[stop.quantity] = stop.reached
+    return counts
+
+
+def mat_predictor(case: Any) -> Predictor | None:
+    """Make what a mat that grows toward a predicted quantity asks after each fiber."""
+    # arrays and fibers from a file grow toward nothing
+    return predictor(case.mat.stop, case.flow) if isinstance(case.mat, LayeredSettings | BoxSettings) else None

@@ -1,0 +1,34 @@
+"""Mesh the air by the engine that the case names, and keep the mesh, its measures and what it cost."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+from dataclasses import fields
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pipeline.line import store
+from pipeline.mesh.fill import engine_missing, fill
+from pipeline.nouns.domain import FluidDomain
+from pipeline.nouns.mesh_measures import MeshingCost
+from pipeline.progress import Progress
+
+if TYPE_CHECKING:
+    from pipeline.line.results import Results
+    from pipeline.line.stage import Counts
+
+_COST = ("mesher_seconds", "mesher_peak_memory")
+
+
+def make(results: "Results", into: Path, progress: Progress) -> "Counts":
+    """Fill the air with cells."""
+    mesh, measures = fill(results.read(FluidDomain), results.case.tetmesh, progress, into)
+    store.save(mesh, into / "mesh.npz")
+    kept = {each.name: getattr(measures, each.name) for each in fields(measures) if each.name not in _COST}
+    store.write_json(into / "measures.json", kept)
+    store.write_json(into / "cost.json", MeshingCost(measures.mesher_seconds, measures.mesher_peak_memory))
+    return {"cells": measures.cells, "volume_error": measures.volume_error}
+
+
+def obstacle(results: "Results") -> str | None:
+    """Say why the engine cannot run on this machine; None where it can."""
+    return engine_missing(results.case.tetmesh)

@@ -1,0 +1,28 @@
+"""Judge the mesh, and keep the report and the fields that it is made of."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pipeline.line import store
+from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.quality import CellFields
+from pipeline.progress import Progress
+from pipeline.quality.judge import cell_fields, judge
+
+if TYPE_CHECKING:
+    from pipeline.line.results import Results
+    from pipeline.line.stage import Counts
+
+
+def make(results: "Results", into: Path, progress: Progress) -> "Counts":
+    """Judge the mesh."""
+    mesh = results.read(FaceMesh)
+    report = judge(mesh, results.case.quality, progress)
+    store.write_json(into / "quality.json", report)
+    fields = cell_fields(mesh)
+    store.save(CellFields(tuple(fields), np.stack(list(fields.values()))), into / "fields.npz")
+    return {"verdict": report.verdict, "max_non_orthogonality": report.metrics["non_orthogonality"].max}

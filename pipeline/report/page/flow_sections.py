@@ -1,0 +1,94 @@
+"""The sections of what the models say and what was solved: pressure drop, flow, efficiency."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+import math
+
+from pipeline.analytics.models.prediction import filter_of_mat, predict
+from pipeline.analytics.settings import FilterSettings
+from pipeline.analytics.tables.rows import comparison_tables, length, prediction_tables
+from pipeline.line.results import Results
+from pipeline.nouns.comparison import Comparison
+from pipeline.nouns.fibers import Mat
+from pipeline.nouns.flow import Solution
+from pipeline.nouns.mat_measures import MatMeasures
+from pipeline.nouns.section import Charts, Columns, Facts, Part, Section, Table, Text
+from pipeline.report.page import charts, words
+
+_WIDE = 4  # columns of a table from which it takes the width of the page
+
+
+def comparison(content: Results) -> Section | None:
+    """Show the models' pressure drops, and the solved one among them."""
+    found = content.get(Comparison)
+    if found is None:
+        return None
+    solution = content.get(Solution)
+    facts = (
+        ("face velocity", f"{100 * found.face_velocity:.4g} cm/s"),
+        ("thickness", length(found.thickness)),
+        ("fiber diameter that keeps length and volume", length(found.fiber_diameter)),
+        ("Knudsen number of the fiber", f"{found.knudsen:.3g} ({found.regime} flow)"),
+        ("Reynolds number of the fiber", f"{found.reynolds:.3g}"),
+    )
+    caption = (
+        "By every model, from the three solidities: as the fibers were laid, as they were united, as they were meshed."
+    )
+    parts: list[Part] = [Charts((charts.models_chart(found, solution),), caption, wide=True), Facts(facts)]
+    parts += comparison_tables(found)
+    if solution is None:
+        parts.append(Text("The flow has not been solved in this run.", "soft"))
+    return Section("comparison", "Pressure drop", "Pressure drop", tuple(parts))
+
+
+def solution(content: Results) -> Section | None:
+    """Show the solved flow, and hold the models against it."""
+    s, found = content.get(Solution), content.get(Comparison)
+    if s is None:
+        return None
+    facts = [
+        ("pressure drop", f"{s.pressure_drop:.4g} Pa"),
+        ("permeability of the mat", f"{1e12 * s.permeability:.4g} µm²"),
+        ("drag on the fibers", f"{s.drag:.4g} N"),
+        ("flow rate", f"{s.flow_rate:.4g} m³/s"),
+        ("iterations", f"{s.iterations:,}, {'settled' if s.converged else 'not settled'}"),
+        ("time", f"{s.seconds:.3g} s on {s.cores} core{'s' if s.cores > 1 else ''}"),
+    ]
+    if s.effective_fiber_diameter is not None:
+        facts.append(("fiber diameter with which the chosen model agrees", length(s.effective_fiber_diameter)))
+    if s.f_star is not None:
+        facts.append(("drag per length over viscosity and velocity, F*", f"{s.f_star:.5g}"))
+    parts: list[Part] = [Facts(tuple(facts))]
+    if found is not None:
+        against = tuple(
+            (row.title or name, words.finite(row.mesh), f"{row.mesh / s.pressure_drop - 1:+.1%}")
+            for name, row in found.models.items()
+            if math.isfinite(row.mesh)
+        )
+        parts.append(Table("", ("model", "Pa from the mesh's solidity", "against CFD"), against))
+    return Section("solution", "Flow", "Solved flow", tuple(parts))
+
+
+def prediction(content: Results) -> Section | None:
+    """Show the efficiency by the single-fiber model."""
+    found, flow = content.get(Comparison), content.case.flow
+    mat, measures = content.get(Mat), content.get(MatMeasures)
+    if found is not None:
+        medium, basis = (
+            FilterSettings(
+                solidity=found.solidity["mesh"], thickness=found.thickness, fiber_diameter=found.fiber_diameter
+            ),
+            "the solidity of the mesh",
+        )
+    elif mat is not None and measures is not None and measures.solidity < 1.0:
+        medium, basis = filter_of_mat(mat, flow.flow()), "the nominal solidity of the mat"
+    else:
+        return None
+    tables = prediction_tables(predict(medium, flow))
+    # the comparison has the pressure drops already
+    shown = tables if found is None else tuple(table for table in tables if table.title != "Pressure drop")
+    narrow = tuple((table,) for table in shown if len(table.columns) < _WIDE)
+    wide = [table for table in shown if len(table.columns) >= _WIDE]
+    drawn = Charts(tuple(charts.prediction_charts(medium, flow)))
+    parts: tuple[Part, ...] = (Text(f"From {basis}.", "soft"), drawn, Columns(narrow, even=True), *wide)
+    return Section("prediction", "Efficiency", "Efficiency by the single-fiber model", parts)

@@ -1,0 +1,13 @@
+"""The stage `report`: everything on one page."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+from pipeline.line.stage import Entry, Stage
+
+REPORT = Stage(
+    name="report",
+    about="All of it on one page.",
+    make=Entry("pipeline.report.make:make"),
+    shows_run=True,
+    section=Entry("pipeline.report.page.flow_sections:prediction"),
+)

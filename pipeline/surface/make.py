@@ -1,0 +1,27 @@
+"""Unite the fibers of a mat, measure their surface, and keep both."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pipeline.line import store
+from pipeline.nouns.fibers import Mat
+from pipeline.progress import Progress
+from pipeline.surface.files import write_surface
+from pipeline.surface.measures import measure_surface
+from pipeline.surface.union import unite
+
+if TYPE_CHECKING:
+    from pipeline.line.results import Results
+    from pipeline.line.stage import Counts
+
+
+def make(results: "Results", into: Path, progress: Progress) -> "Counts":
+    """Unite the fibers."""
+    mat, settings = results.read(Mat), results.case.surface
+    surface = unite(mat, settings, progress)
+    store.save(surface, into / "surface.npz")
+    store.write_json(into / "measures.json", measure_surface(mat, surface, settings, progress))
+    write_surface(surface, into)
+    return {"triangles": len(surface.triangles), "solidity": surface.solidity}
