@@ -2,6 +2,6 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-from pipeline.cli.app import main
+from pipeline.cli.entry import main
 
 main()

@@ -21,14 +21,14 @@ app = App(
     version=lambda: importlib.metadata.version("fibertwin"),
     version_flags=["--version"],
     # that a switch is off and a list empty goes without saying
+    # an interruption has an end of its own (pipeline/cli/interruption.py)
+    suppress_keyboard_interrupt=False,
     default_parameter=Parameter(show_default=lambda value: None if value in (False, ()) else value),
 )
 app.register_install_completion_command()
 out = Console()
 err = Console(stderr=True)
 
-INTERRUPTED = 130
-"""Exit code after Ctrl-C, as shells have it."""
 WRONG_USE = 2
 """Exit code of a command line that asks for nonsense."""
 
@@ -379,12 +379,11 @@ def main() -> None:
     """Run the command line: a user's mistake becomes one message and an exit code, a bug keeps its traceback."""
     try:
         app(sys.argv[1:], exit_on_error=False, print_error=False)
+        # or the interpreter would find at its very end that the disk is full
+        sys.stdout.flush()
     except CycloptsError as problem:
         err.print(f"error: {problem}; see fibertwin --help", style="red", markup=False, highlight=False, soft_wrap=True)
         raise SystemExit(WRONG_USE) from None
     except FibertwinError as problem:
         err.print(f"error: {printable(str(problem))}", style="red", markup=False, highlight=False, soft_wrap=True)
         raise SystemExit(problem.exit_code) from None
-    except KeyboardInterrupt:
-        err.print("stopped; finished stages are kept, and the same command continues")
-        raise SystemExit(INTERRUPTED) from None

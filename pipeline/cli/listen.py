@@ -2,6 +2,7 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import math
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,9 +13,7 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeEl
 from pipeline.progress import Progress as Tell
 from pipeline.progress import silent
 
-_QUIET_GAP = 10.0  # seconds between two plain lines about the same thing, so that a log stays readable
-
-_SHORT_GAP = 0.3  # seconds in which one line about a stage is enough
+_GAP = 5.0  # seconds between two plain lines, so that a log stays readable
 
 
 @contextmanager
@@ -38,14 +37,13 @@ def listening(console: Console, quiet: bool) -> Iterator[Tell]:
 
 
 def _plain(console: Console) -> Tell:
-    last: list[object] = ["", 0.0]
+    last = -math.inf
 
     def tell(what: str, done: float | None = None) -> None:
+        nonlocal last
         now = time.monotonic()
-        topic, gap = what.split(",")[0], now - float(str(last[1]))
-        same_stage = topic.split(":")[0] == str(last[0]).split(":")[0]
-        if (topic != last[0] and not (same_stage and gap < _SHORT_GAP)) or gap > _QUIET_GAP:
-            last[:] = [topic, now]
+        if now - last >= _GAP:
+            last = now
             share = f" {done:.0%}" if done is not None else ""
             console.print(f"  {what}{share}", markup=False, highlight=False, soft_wrap=True)
 

@@ -1,0 +1,101 @@
+"""Ctrl-C, SIGTERM and a closed terminal end a command: cleanly, with one sentence, and with the code that shells expect.
+
+Python raises its KeyboardInterrupt once, and where that happens inside a callback of a library written in C, as while
+numba compiles, the exception is thrown away and the command goes on. Here it is raised again until it has arrived.
+"""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+import contextlib
+import signal
+import sys
+from collections.abc import Iterator
+from types import FrameType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sys import UnraisableHookArgs
+
+_NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
+_WORDS = {"SIGINT": "Ctrl-C", "SIGHUP": "the end of its terminal"}
+_AGAIN = 0.1  # seconds until an interruption that was thrown away is raised again
+
+
+class Interrupted(KeyboardInterrupt):
+    """Raised at whatever the command is doing when it is asked to end."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__()
+        self.number = number
+
+
+@contextlib.contextmanager
+def interruptible() -> Iterator[None]:
+    """End the process in order when it is asked to end within the block.
+
+    Raises
+    ------
+    SystemExit
+        With 128 and the signal's number: 130 after Ctrl-C, 143 after SIGTERM.
+    """
+    kept = sys.unraisablehook
+    sys.unraisablehook = _without_interruptions
+    # one that is ignored, as nohup has it, stays ignored
+    numbers = [getattr(signal, name) for name in _NAMES if hasattr(signal, name)]
+    before = {number: signal.getsignal(number) for number in numbers if signal.getsignal(number) != signal.SIG_IGN}
+    try:
+        for number in before:
+            signal.signal(number, _interrupt)
+        yield
+    except KeyboardInterrupt as interruption:
+        # a second one ends the process on the spot
+        for number in before:
+            signal.signal(number, signal.SIG_DFL)
+        number = interruption.number if isinstance(interruption, Interrupted) else signal.SIGINT
+        name = signal.Signals(number).name
+        # who closed the terminal does not read this
+        with contextlib.suppress(OSError, ValueError):
+            sys.stderr.write(
+                f"stopped by {_WORDS.get(name, name)}; finished stages are kept, and the same command continues\n"
+            )
+            sys.stderr.flush()
+        raise SystemExit(128 + number) from None
+    else:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    finally:
+        _raise_again(None)
+        sys.unraisablehook = kept
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    _raise_again(number)
+    raise Interrupted(number)
+
+
+def _raise_again(number: int | None) -> None:
+    """Raise an interruption again and again until it arrives; None ends that."""
+    if not hasattr(signal, "setitimer"):
+        return
+
+    def again(alarm: int, frame: FrameType | None) -> None:
+        # in a block that cleans up after it, it has arrived, and must let that block end
+        if number is not None and not _arrived():
+            raise Interrupted(number)
+
+    signal.setitimer(signal.ITIMER_REAL, *((0.0, 0.0) if number is None else (_AGAIN, _AGAIN)))
+    signal.signal(signal.SIGALRM, signal.SIG_DFL if number is None else again)
+
+
+def _arrived() -> bool:
+    handled = sys.exception()
+    while handled is not None:
+        if isinstance(handled, Interrupted):
+            return True
+        handled = handled.__context__
+    return False
+
+
+def _without_interruptions(thrown_away: "UnraisableHookArgs") -> None:
+    if not isinstance(thrown_away.exc_value, Interrupted):
+        sys.__unraisablehook__(thrown_away)

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+import io
+
+import pytest
+from rich.console import Console
+
+from pipeline.cli import listen
+
+
+def told(console: Console, quiet: bool = False) -> None:
+    with listen.listening(console, quiet) as tell:
+        # a solve of a minute that tells of itself ten times a second, and other stages after it
+        for step in range(600):
+            tell(f"solve: iteration {3 * step}, pressure drop 3.4 Pa", step / 600)
+        for stage in ("capture", "report"):
+            tell(f"{stage}: working")
+
+
+def test_without_a_terminal_a_line_is_printed_every_few_seconds(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = iter(0.1 * k for k in range(10_000))
+    monkeypatch.setattr("pipeline.cli.listen.time.monotonic", lambda: next(clock))
+    written = io.StringIO()
+    told(Console(file=written))
+    lines = written.getvalue().splitlines()
+    # 60 seconds and a line every 5
+    assert 11 <= len(lines) <= 13
+    assert lines[:2] == [
+        "  solve: iteration 0, pressure drop 3.4 Pa 0%",
+        "  solve: iteration 150, pressure drop 3.4 Pa 8%",
+    ]
+
+
+def test_quiet_is_quiet() -> None:
+    written = io.StringIO()
+    told(Console(file=written), quiet=True)
+    assert written.getvalue() == ""
