@@ -1,4 +1,4 @@
-"""Ctrl-C, SIGTERM and a closed terminal end a command: cleanly, with one sentence, and with the code that shells expect.
+"""Ctrl-C, SIGTERM and a closed terminal end a command: cleanly, with one sentence, and with the code shells expect.
 
 Python raises its KeyboardInterrupt once, and where that happens inside a callback of a library written in C, as while
 numba compiles, the exception is thrown away and the command goes on. Here it is raised again until it has arrived.
