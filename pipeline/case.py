@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import difflib
+import re
 import tomllib
 from functools import cache
 from pathlib import Path
@@ -13,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 from pipeline.errors import CaseError
 from pipeline.line.stages import LINE, SHARED
 from pipeline.mat.settings import STOPS, FileSettings
+from pipeline.reading import read_bytes
 from pipeline.units import FROM_FILE
 
 LARGEST_FILE = 100_000
@@ -20,6 +22,11 @@ LARGEST_FILE = 100_000
 
 DEEPEST = 20
 """No case file nests more tables than this into each other; what walks through them may be recursive."""
+LARGEST_INTEGER = 2**63 - 1
+"""TOML's integers have 64 bits."""
+# a name of more parts than tables may nest; a part starts where no name goes on, or the search takes a square too
+_PART = r"(?:[A-Za-z0-9_-]++|\"[^\"\n]*+\"|'[^'\n]*+')"
+_LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{DEEPEST},}}")
 _MOST_MISTAKES, _LONGEST_LINE = 20, 400
 
 _Settings = TypeVar("_Settings", bound=BaseModel)
@@ -94,12 +101,9 @@ def read_toml(path: Path) -> dict[str, Any]:
         If the file cannot be read or is no TOML.
     """
     try:
-        with path.open("rb") as file:
-            # not the file's own word for its size: a device has none and never ends
-            content = file.read(LARGEST_FILE + 1)
-        if len(content) > LARGEST_FILE:
-            raise CaseError(f"{path} has more than {LARGEST_FILE:,} bytes, which no case file needs: is it one?")
-        return _shallow(tomllib.loads(content.decode("utf-8")), str(path))
+        text = read_bytes(path, LARGEST_FILE).decode("utf-8")
+        _refuse_long_keys(text, str(path))
+        return _sound(tomllib.loads(text), str(path))
     except OSError as problem:
         raise CaseError(f"cannot read the case file {path}: {problem.strerror}") from problem
     except UnicodeDecodeError as problem:
@@ -109,15 +113,22 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise CaseError(f"{path} is not valid TOML: {problem}") from problem
 
 
-def _shallow(content: dict[str, Any], source: str) -> dict[str, Any]:
+def _refuse_long_keys(text: str, source: str) -> None:
+    # before the parser, which takes the square of their length
+    found = _LONG_KEY.search(text)
+    if found is not None:
+        line = text.count("\n", 0, found.start()) + 1
+        raise CaseError(f"{source}, line {line}, nests tables more than {DEEPEST} deep; a case file needs 5")
+
+
+def _sound(content: dict[str, Any], source: str) -> dict[str, Any]:
+    """Refuse what no case needs and what libraries stumble over: deep nesting, integers of hundreds of digits."""
     level: list[Any] = [content]
     for _ in range(DEEPEST):
-        level = [
-            inner
-            for outer in level
-            for inner in (outer.values() if isinstance(outer, dict) else outer)
-            if isinstance(inner, dict | list)
-        ]
+        inner = [each for outer in level for each in (outer.values() if isinstance(outer, dict) else outer)]
+        if any(isinstance(each, int) and abs(each) > LARGEST_INTEGER for each in inner):
+            raise CaseError(f"{source} has an integer of more than {len(str(LARGEST_INTEGER))} digits; TOML has none")
+        level = [each for each in inner if isinstance(each, dict | list)]
     if level:
         raise CaseError(f"{source} nests tables or lists more than {DEEPEST} deep; a case file needs 5")
     return content
@@ -163,7 +174,8 @@ def _copy(content: dict[str, Any]) -> dict[str, Any]:
 
 def _toml_value(text: str) -> Any:
     try:
-        return _shallow(tomllib.loads(f"value = {text}"), "--set")["value"]
+        _refuse_long_keys(text, "--set")
+        return _sound(tomllib.loads(f"value = {text}"), "--set")["value"]
     except (ValueError, RecursionError):
         return text
 

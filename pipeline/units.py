@@ -114,7 +114,10 @@ def quantity_reader(unit: str) -> BeforeValidator:
             return parse(value, unit)
         is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
         if is_number and (unit == "" or info.context is not FROM_FILE):
-            return float(value)
+            try:
+                return float(value)
+            except OverflowError:
+                raise ValueError("an integer of hundreds of digits is no quantity") from None
         raise ValueError(_advice(value, unit))
 
     return BeforeValidator(read)

@@ -61,7 +61,12 @@ def read_options(
     if read_medium is None or read_flow is None:
         raise CaseError("\n".join(mistakes))
     if flow is not None:
-        read_flow = flow.model_copy(update={name: getattr(read_flow, name) for name in of_flow})
+        changed = {**flow.model_dump(), **{name: getattr(read_flow, name) for name in of_flow}}
+        try:
+            read_flow = FlowSettings.model_validate(changed)
+        except ValidationError as problem:
+            # each value is fine, together they are not
+            raise CaseError("\n".join(_lines(problem))) from None
     return read_medium, read_flow
 
 
@@ -69,7 +74,9 @@ def _lines(problem: ValidationError) -> list[str]:
     lines = []
     for error in problem.errors(include_url=False):
         option = "--" + "-".join(str(part) for part in error["loc"][:1]).replace("_", "-")
-        if error["type"] == "missing":
+        if not error["loc"]:
+            lines.append(error["msg"].removeprefix("Value error, "))
+        elif error["type"] == "missing":
             lines.append(f"{option} is missing; give it, or a case or run that has it")
         elif error["type"] == "extra_forbidden":
             lines.append(f"{option}: there is no such option")

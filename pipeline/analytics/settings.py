@@ -2,13 +2,18 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-from pydantic import BaseModel, ConfigDict, Field
+from typing import Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from pipeline.analytics.formulas import air
 from pipeline.analytics.models.pressure_models import PressureModelName
 from pipeline.analytics.models.single_fiber import PresetName
 from pipeline.nouns.flow import Flow
 from pipeline.units import Density, Fraction, Length, PositiveRatio, Pressure, Temperature, Velocity, Viscosity
+
+INCOMPRESSIBLE = 0.3
+"""Mach number below which air's density changes by less than 5 %, as the equations of every stage take for granted."""
 
 
 class FlowSettings(BaseModel):
@@ -46,6 +51,26 @@ class FlowSettings(BaseModel):
         default="davies",
         description="pressure-drop model of the figure of merit and the HEPA check, and of a mat whose stop names none",
     )
+
+    @model_validator(mode="after")
+    def _is_within_the_equations(self) -> Self:
+        if not air.COLDEST <= self.temperature <= air.HOTTEST:
+            raise ValueError(
+                f"temperature is {self.temperature:g} K: the properties of air are known from {air.COLDEST:g} to "
+                f"{air.HOTTEST:g} K, and it is liquid below 79 K"
+            )
+        if self.density is None and self.pressure > air.DENSEST:
+            raise ValueError(
+                f"pressure is {self.pressure:g} Pa: air is an ideal gas up to {air.DENSEST:g} Pa; give density"
+            )
+        mach = self.face_velocity / air.sound_speed(self.temperature)
+        if mach > INCOMPRESSIBLE:
+            raise ValueError(
+                f"face_velocity is {self.face_velocity:g} m/s, Mach {mach:.2g}: the equations hold for incompressible "
+                f"flow, up to Mach {INCOMPRESSIBLE} ({INCOMPRESSIBLE * air.sound_speed(self.temperature):.0f} m/s at "
+                f"{self.temperature:g} K)"
+            )
+        return self
 
     def flow(self) -> Flow:
         """Air with every property known.

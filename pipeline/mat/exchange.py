@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import csv
+import errno
 import io
 import re
 from collections.abc import Iterator
@@ -15,6 +16,7 @@ from pipeline.errors import CaseError
 from pipeline.geometry.box import Box
 from pipeline.geometry.triangles import Floats
 from pipeline.nouns.fibers import Mat
+from pipeline.reading import read_bytes
 from pipeline.units import parse
 
 _COLUMNS = ("fiber", "x", "y", "z", "radius")
@@ -120,13 +122,10 @@ def read_fibers(path: Path, side: float | None = None, periodic: bool | None = N
         If the file is wrong, with the line, the column and the reason.
     """
     try:
-        with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-        if len(content) > LARGEST_FILE:
-            raise CaseError(f"{path} has more than {LARGEST_FILE:,} bytes; leave out points on straight pieces")
-        text = content.decode("utf-8-sig")
+        text = read_bytes(path, LARGEST_FILE).decode("utf-8-sig")
     except OSError as problem:
-        raise CaseError(f"cannot read the fibers of {path}: {problem.strerror}") from problem
+        advice = "; leave out points on straight pieces" if problem.errno == errno.EFBIG else ""
+        raise CaseError(f"cannot read the fibers of {path}: {problem.strerror}{advice}") from problem
     except UnicodeDecodeError as problem:
         raise CaseError(f"{path} is not a text file in UTF-8: {problem.reason} at byte {problem.start}") from problem
     except ValueError as problem:
@@ -156,7 +155,11 @@ def _rows(text: str, notes: _Notes, path: Path) -> Iterator[tuple[int, list[str]
         if not line.strip():
             continue
         if not line.lstrip().startswith("#"):
-            yield number, [value.strip() for value in next(csv.reader([line]))]
+            try:
+                yield number, [value.strip() for value in next(csv.reader([line]))]
+            except csv.Error as problem:
+                # as a value of more than 131072 letters
+                raise CaseError(f"{path}, line {number}: {problem}") from None
         elif (note := _NOTE.fullmatch(line.strip())) is not None:
             _read_note(note["key"], note["value"], notes, path, number)
 

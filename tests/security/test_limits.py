@@ -2,6 +2,8 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import json
+import os
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -10,12 +12,16 @@ import numpy as np
 import psutil
 import pytest
 
-from pipeline.case import LARGEST_FILE, override, read_case
+from pipeline.analytics.options import read_options
+from pipeline.analytics.settings import FilterSettings, FlowSettings
+from pipeline.case import LARGEST_FILE, override, read_case, read_toml
+from pipeline.cli.bundled import bundled
 from pipeline.cli.printable import printable
 from pipeline.errors import CaseError, StageError
 from pipeline.export.formats.openfoam.case import write_openfoam
 from pipeline.export.read import read_mesh
 from pipeline.export.settings import ExportSettings
+from pipeline.line.run import Run
 from pipeline.mat import exchange
 from pipeline.units import parse
 from tests.openfoam import AIR
@@ -40,7 +46,13 @@ def test_a_unit_is_no_formula_that_computes_for_good(text: str) -> None:
 @pytest.mark.parametrize(
     ("content", "told"),
     [
-        ("a" + ".a" * 5000 + " = 1", "more than 20 deep"),
+        ("a" + ".a" * 5000 + " = 1", "line 1, nests tables more than 20 deep"),
+        ("[mat]\n'a'" + ' . "b"' * 12_000 + " = 1", "line 2, nests tables more than 20 deep"),
+        ("[a" + ".a" * 40_000 + "]", "line 1, nests tables more than 20 deep"),
+        ("x = {a" + ".a" * 40_000 + " = 1}", "line 1, nests tables more than 20 deep"),
+        ("[mat]\nseed = 1" + "0" * 400, "integer of more than 19 digits"),
+        ("[mat]\nside = -1" + "0" * 400, "integer of more than 19 digits"),
+        ("[mat]\nside = [[1" + "0" * 400 + "]]", "integer of more than 19 digits"),
         ("a = " + "[" * 5000, "not valid TOML"),
         ("[mat]\nseed = " + "9" * 5000, "not valid TOML"),
         ("#" * LARGEST_FILE + "\n", "more than 100,000 bytes"),
@@ -56,9 +68,80 @@ def test_case_files_of_strangers_are_refused_in_a_few_lines(content: str, told: 
     assert len(str(caught.value)) < 12_000
 
 
-def test_a_file_without_an_end_is_refused() -> None:
-    with in_time(), pytest.raises(CaseError, match="more than"):
-        read_case(Path("/dev/zero"))
+def test_quoted_text_is_no_name_however_many_points_it_has(tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text('# 1.2.3.4.5.6\n[mat]\nfile = "' + "a.b/" * 300 + '"\n[x]\n' + "y" * 60_000 + " = 1\n")
+    with in_time():
+        assert read_toml(path)["mat"]["file"] == "a.b/" * 300
+
+
+@pytest.mark.parametrize("kind", ["pipe", "device", "folder", "link to nothing", "link to itself", "link to a pipe"])
+def test_only_a_file_is_read_as_one(kind: str, tmp_path: Path) -> None:
+    path = tmp_path / "input"
+    told = {"pipe": "is a pipe", "device": "is a device", "folder": "directory|no file", "link to a pipe": "is a pipe"}
+    match kind:
+        case "pipe":
+            os.mkfifo(path)
+        case "device":
+            path.symlink_to("/dev/zero")
+        case "folder":
+            path.mkdir()
+        case "link to nothing":
+            path.symlink_to("nothing")
+        case "link to itself":
+            path.symlink_to(path)
+        case _:
+            os.mkfifo(tmp_path / "pipe")
+            path.symlink_to("pipe")
+    for read in (read_case, exchange.read_fibers):
+        with in_time(), pytest.raises(CaseError, match=told.get(kind, "link")):
+            read(path)
+
+
+def test_a_path_with_a_zero_byte_is_no_path() -> None:
+    with pytest.raises(CaseError, match="null byte"):
+        exchange.read_fibers(Path("fibers\0.csv"))
+
+
+def test_a_value_of_a_novel_is_refused_with_its_line(tmp_path: Path) -> None:
+    path = tmp_path / "fibers.csv"
+    path.write_text("fiber,x [um],y [um],z [um],radius [nm]\na," + "5" * 200_000 + ",5,1,500\n")
+    with in_time(), pytest.raises(CaseError, match="line 2: field larger than field limit"):
+        exchange.read_fibers(path)
+
+
+def test_a_huge_integer_in_a_runs_case_is_our_error(tmp_path: Path) -> None:
+    content = read_case(bundled()["smoke"]).content()
+    for value in (10**400, -(10**400)):
+        content["flow"]["temperature"] = value
+        (tmp_path / "case.json").write_text(json.dumps(content))
+        with pytest.raises(StageError, match="cannot read"):
+            Run.opened(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("override", "told"),
+    [
+        ("flow.face_velocity=1000 m/s", "flow: face_velocity is 1000 m/s, Mach 2.9"),
+        ("flow.face_velocity=1e9 m/s", "Mach 2.9e.06"),
+        ("flow.temperature=1 K", "flow: temperature is 1 K: the properties of air are known from 170 to 1900 K"),
+        ("flow.temperature=1e5 K", "known from 170 to 1900 K"),
+        ("flow.pressure=1e12 Pa", "flow: pressure is 1e.12 Pa: air is an ideal gas up to"),
+    ],
+)
+def test_physics_that_the_equations_do_not_hold_for_is_refused(override: str, told: str) -> None:
+    with pytest.raises(CaseError, match=told):
+        read_case(bundled()["smoke"], (override,))
+    key, value = override.removeprefix("flow.").split("=")
+    with pytest.raises(CaseError, match=told.removeprefix("flow: ")):
+        read_options({"solidity": "5 %", "thickness": "1 mm", "fiber_diameter": "2 um", key: value})
+
+
+def test_what_is_fine_alone_may_be_too_fast_together() -> None:
+    # 100 m/s is Mach .29 at 293 K and .38 at 170 K
+    medium = FilterSettings(solidity=0.05, thickness=1e-3, fiber_diameter=2e-6)
+    with pytest.raises(CaseError, match=r"face_velocity is 100 m/s, Mach 0\.38"):
+        read_options({"face_velocity": "100 m/s"}, medium, FlowSettings(temperature=170.0))
 
 
 def test_an_override_is_as_shallow_as_a_case() -> None:

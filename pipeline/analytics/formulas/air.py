@@ -5,9 +5,15 @@
 REFERENCE_PRESSURE = 101325.0
 """Standard atmosphere [Pa]."""
 
+COLDEST, HOTTEST = 170.0, 1900.0
+"""Temperatures [K] from and to which the laws below hold to about 1 %."""
+DENSEST = 1e7
+"""Pressure [Pa] up to which air is an ideal gas, to some per cent at room temperature."""
+
 _SUTHERLAND = 110.4  # Sutherland's temperature of air, K
 _SUTHERLAND_FACTOR = 1.458e-6  # kg/(m s K^0.5)
 _GAS_CONSTANT = 287.053  # of dry air, J/(kg K)
+_HEAT_RATIO = 1.4  # of the specific heats of air
 _FREE_PATH = 65.3e-9  # m, at the temperature below and REFERENCE_PRESSURE
 _FREE_PATH_TEMPERATURE = 293.0  # K
 
@@ -58,6 +64,25 @@ def density(temperature: float, pressure: float = REFERENCE_PRESSURE) -> float:
     1.2
     """
     return pressure / (_GAS_CONSTANT * temperature)
+
+
+def sound_speed(temperature: float) -> float:
+    r"""Speed of sound in air as an ideal gas, :math:`c = \sqrt{1.4 R T}` with R = 287.053 J/(kg K).
+
+    Parameters
+    ----------
+    temperature : float [K]
+
+    Returns
+    -------
+    float [m/s]
+
+    Examples
+    --------
+    >>> round(sound_speed(293.15), 1)
+    343.2
+    """
+    return float((_HEAT_RATIO * _GAS_CONSTANT * temperature) ** 0.5)
 
 
 def mean_free_path(temperature: float, pressure: float = REFERENCE_PRESSURE) -> float:
