@@ -57,20 +57,19 @@ def _is_text(node: ast.stmt) -> bool:
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
 
 
-def _imported(tree: ast.AST) -> Iterator[str]:
-    for node in ast.iter_child_nodes(tree):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom) and node.module:
-            # a name may be a module or something within one: whoever asks finds out
-            yield from (f"{node.module}.{alias.name}" for alias in node.names)
-        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and _PLACE.fullmatch(node.value):
-            yield node.value.partition(":")[0]
-        elif isinstance(node, ast.If) and _is_for_types(node.test):
-            for other in node.orelse:
-                yield from _imported(other)
-        else:
-            yield from _imported(node)
+def _imported(node: ast.AST) -> Iterator[str]:
+    inner = ast.iter_child_nodes(node)
+    if isinstance(node, ast.Import):
+        yield from (alias.name for alias in node.names)
+    elif isinstance(node, ast.ImportFrom) and node.module:
+        # a name may be a module or something within one: whoever asks finds out
+        yield from (f"{node.module}.{alias.name}" for alias in node.names)
+    elif isinstance(node, ast.Constant) and isinstance(node.value, str) and _PLACE.fullmatch(node.value):
+        yield node.value.partition(":")[0]
+    elif isinstance(node, ast.If) and _is_for_types(node.test):
+        inner = iter(node.orelse)
+    for each in inner:
+        yield from _imported(each)
 
 
 def _is_for_types(test: ast.expr) -> bool:

@@ -12,6 +12,7 @@ from pipeline.line.results import Results
 from pipeline.line.stage import Stage, giver
 
 NO_RESULT = "no result yet"
+_PARTS = ("parameters", "sources", "inputs", "code", "libraries", "counts")
 _SHOWN = 3  # files of the program, or settings, that one reason names
 _LONGEST = 60  # characters of a value that is quoted
 
@@ -95,7 +96,7 @@ def reasons(stage: Stage, results: Results) -> tuple[str, ...]:
     """
     folder = results.folder / stage.name
     manifest = store.read_manifest(folder)
-    if manifest is None:
+    if manifest is None or not _whole(manifest):
         return (NO_RESULT if not folder.exists() else "its manifest is missing or damaged",)
     now = identity(stage, results)
     found = [
@@ -109,6 +110,12 @@ def reasons(stage: Stage, results: Results) -> tuple[str, ...]:
     if not found and manifest["key"] != store.digest(now):
         found.append("its manifest is damaged")
     return tuple(found)
+
+
+def _whole(manifest: dict[str, Any]) -> bool:
+    return all(isinstance(manifest.get(part), dict) for part in _PARTS) and isinstance(
+        manifest.get("seconds"), int | float
+    )
 
 
 def _settings(before: Any, now: Any) -> Iterator[str]:
