@@ -70,19 +70,34 @@ def parse(text: str, unit: str) -> float:
     # pint counts "GiB" and "" alike as ratios
     if match is None or (unit == "") != (match["unit"].strip() in _RATIO_UNITS):
         raise ValueError(_advice(text, unit))
+    number, name = float(match["number"]), match["unit"].strip()
+    value = _common(number, name, unit)
+    if value is None:
+        value = _by_pint(number, name, unit, text)
+    if not math.isfinite(value):
+        raise ValueError(f"{text!r} is not a finite number")
+    # 1.4 um must become the same float as 1.4e-6, or two spellings of one case would differ
+    return float(f"{value:.15g}")
+
+
+def _common(number: float, name: str, unit: str) -> float | None:
+    """Convert what nearly every case file has, which spares loading pint; None for everything else."""
+    if unit == "":
+        return number / 100.0 if name in ("%", "percent") else number
+    if (unit, name) == ("kelvin", "degC"):
+        return number + 273.15
+    return next((number * size for known, size in _SCALES.get(unit, ()) if known == name), None)
+
+
+def _by_pint(number: float, name: str, unit: str, text: str) -> float:
     from tokenize import TokenError
 
     import pint
 
     try:
-        quantity = _registry().Quantity(float(match["number"]), match["unit"].strip() or "dimensionless")
-        value = float(quantity.to(unit or "dimensionless").magnitude)
+        return float(_registry().Quantity(number, name or "dimensionless").to(unit or "dimensionless").magnitude)
     except (pint.PintError, ValueError, TypeError, AttributeError, ArithmeticError, AssertionError, TokenError) as odd:
         raise ValueError(_advice(text, unit)) from odd
-    if not math.isfinite(value):
-        raise ValueError(f"{text!r} is not a finite number")
-    # 1.4 um must become the same float as 1.4e-6, or two spellings of one case would differ
-    return float(f"{value:.15g}")
 
 
 _EXAMPLES = {

@@ -14,14 +14,8 @@ from pipeline.analytics.models.prediction import filter_of_comparison, filter_of
 from pipeline.analytics.options import read_options
 from pipeline.analytics.settings import FilterSettings, FlowSettings
 from pipeline.analytics.tables.rows import prediction_tables
-from pipeline.case import read_case
 from pipeline.cli.tables import plain_table
-from pipeline.line.run import Run
 from pipeline.line.store import disk_trouble_explained
-from pipeline.mat.generate import generate
-from pipeline.mat.make import mat_predictor
-from pipeline.nouns.comparison import Comparison
-from pipeline.nouns.fibers import Mat
 
 
 def predict_filter(source: Path | None, given: Mapping[str, str], as_json: bool, plot: Path | None) -> None:
@@ -43,6 +37,14 @@ def predict_filter(source: Path | None, given: Mapping[str, str], as_json: bool,
 
 
 def _known(source: Path) -> tuple[FilterSettings, FlowSettings]:
+    # the line is loaded for who names a case or a run, not for who types numbers
+    from pipeline.case import read_case
+    from pipeline.line.run import Run
+    from pipeline.mat.generate import generate
+    from pipeline.mat.make import mat_predictor
+    from pipeline.nouns.comparison import Comparison
+    from pipeline.nouns.fibers import Mat
+
     if source.is_dir():
         run = Run.opened(source)
         if (source / "compare").is_dir():

@@ -14,7 +14,7 @@ from pipeline.cli.listen import listening
 from pipeline.cli.tables import outcome_table, prospect_table, result_tables
 from pipeline.errors import CaseError
 from pipeline.line.run import LAST, LINE, STAGES, Run, dry_run, run
-from pipeline.report.page.page import PAGE
+from pipeline.report.stage import PAGE
 
 
 def run_case(

@@ -4,19 +4,22 @@
 
 import re
 from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
 
 from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
-from pipeline.cli.doctor import Finding
-from pipeline.line.results import Results
-from pipeline.line.run import Outcome, Prospect
-from pipeline.line.stage import Stage
 from pipeline.units import duration
 
+if TYPE_CHECKING:
+    from pipeline.cli.doctor import Finding
+    from pipeline.line.results import Results
+    from pipeline.line.run import Outcome, Prospect
+    from pipeline.line.stage import Stage
 
-def findings_table(findings: Iterable[Finding]) -> Table:
+
+def findings_table(findings: "Iterable[Finding]") -> Table:
     """Show what `doctor` found, one line per thing."""
     table = Table("", "found", "what to do", box=None, title="fibertwin doctor", title_justify="left")
     for finding in findings:
@@ -25,7 +28,7 @@ def findings_table(findings: Iterable[Finding]) -> Table:
     return table
 
 
-def outcome_table(outcomes: Iterable[Outcome], line: Iterable[Stage]) -> Table:
+def outcome_table(outcomes: "Iterable[Outcome]", line: "Iterable[Stage]") -> Table:
     """Show what became of each stage, and why."""
     units = {stage.name: stage.units for stage in line}
     table = Table("stage", "", "time", "result", "why", box=None)
@@ -36,7 +39,7 @@ def outcome_table(outcomes: Iterable[Outcome], line: Iterable[Stage]) -> Table:
     return table
 
 
-def prospect_table(prospects: Iterable[Prospect]) -> Table:
+def prospect_table(prospects: "Iterable[Prospect]") -> Table:
     """Show what would become of each stage, why, and what it would take."""
     table = Table("stage", "would", "why", "cells", "memory", "processor time", box=None)
     for each in prospects:
@@ -68,7 +71,7 @@ def _count(name: str, value: object, units: Mapping[str, str]) -> str:
     return f"{label} {' '.join(map(str, value))}" if isinstance(value, list | tuple) else f"{label} {value}"
 
 
-def result_tables(results: Results, stages: Iterable[str]) -> list[Group]:
+def result_tables(results: "Results", stages: Iterable[str]) -> list[Group]:
     """Lay out what stages show of their results."""
     shown = [stage.tables for stage in results.line if stage.name in stages and stage.tables is not None]
     return [plain_table(table.title, table.columns, table.rows) for tables in shown for table in tables(results)]

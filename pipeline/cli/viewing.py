@@ -11,7 +11,7 @@ from pipeline.errors import CaseError, StageError
 from pipeline.line.run import Run, report
 from pipeline.line.store import disk_trouble_explained
 from pipeline.nouns.fibers import Mat
-from pipeline.report.page.page import PAGE
+from pipeline.report.stage import PAGE
 from pipeline.report.views.painter import possible
 from pipeline.report.views.render import Painting, screenless
 from pipeline.report.views.scenes import SCENES, Subject, show

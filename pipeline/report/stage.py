@@ -4,6 +4,9 @@
 
 from pipeline.line.stage import Entry, Stage
 
+PAGE = "report.html"
+"""File of the stage that holds the page."""
+
 REPORT = Stage(
     name="report",
     about="All of it on one page.",

@@ -10,7 +10,7 @@ import pytest
 from pipeline.line.run import Run, report, run
 from pipeline.nouns.fibers import Mat
 from pipeline.nouns.surface import Surface
-from pipeline.report.page.page import PAGE
+from pipeline.report.stage import PAGE
 from pipeline.report.views.render import Pictures
 from tests.report.contents import CASE
 from tests.report.pages import read

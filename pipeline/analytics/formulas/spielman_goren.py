@@ -17,12 +17,12 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.special import k0e, k1e
 
+from pipeline.analytics.formulas.bessel import scaled_bessel_ratio
 from pipeline.analytics.formulas.numbers import Numbers
 from pipeline.nouns.arrays import Floats
 
+_MOST, _EXACT = 100, 1e-14  # steps, and what is as good as nothing
 _SCREENING = (-45.0, 12.0)  # ln xi: from solidity 1e-36 to where the medium is as good as solid
 
 
@@ -84,8 +84,7 @@ def spielman_goren_isotropic(solidity: Numbers, slip_length: Numbers = 0.0) -> F
 
 
 def _stuck(reach: float) -> float:
-    # scaled Bessel functions: the plain ones underflow in dense media, their ratio does not
-    return float(k1e(reach) / (reach * k0e(reach)))
+    return scaled_bessel_ratio(reach) / reach
 
 
 def _across(reach: float, slip: float) -> float:
@@ -109,7 +108,25 @@ def _solve(balance: Callable[[float, float], float], floor: float, solidity: Num
 
         if surplus(_SCREENING[1]) > 0:
             return math.inf
-        return 4.0 * math.exp(2.0 * float(brentq(surplus, *_SCREENING, xtol=1e-13)))
+        return 4.0 * math.exp(2.0 * _root(surplus, *_SCREENING))
 
     values: Floats = np.vectorize(one, otypes=[np.float64])(solidity, slip_length)
     return values
+
+
+def _root(surplus: Callable[[float], float], low: float, high: float) -> float:
+    """Find where a falling function that is nearly straight crosses 0, by secants that keep the root between them."""
+    at_low, at_high = surplus(low), surplus(high)
+    for _ in range(_MOST):
+        middle = high - at_high * (high - low) / (at_high - at_low)
+        at_middle = surplus(middle)
+        if at_middle * at_high < 0.0:
+            low, at_low = high, at_high
+        else:
+            # the end that stays loses weight, or it would stay for good (Anderson and Bjorck, BIT 13 (1973) 253-264)
+            weight = 1.0 - at_middle / at_high
+            at_low *= weight if weight > 0.0 else 0.5
+        high, at_high = middle, at_middle
+        if abs(at_middle) < _EXACT or abs(high - low) < _EXACT:
+            break
+    return high

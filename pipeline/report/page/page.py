@@ -17,11 +17,10 @@ from pipeline.progress import Progress, silent
 from pipeline.report.page import words
 from pipeline.report.page.html import page_of
 from pipeline.report.page.provenance import provenance
+from pipeline.report.stage import PAGE
 from pipeline.report.views.painter import possible
 from pipeline.report.views.render import Painting, Pictures
 from pipeline.report.views.subject import subject_of
-
-PAGE = "report.html"
 
 
 def write_report(content: Results, folder: Path, progress: Progress = silent) -> Path:
