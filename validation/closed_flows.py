@@ -8,9 +8,8 @@ from collections.abc import Callable
 import numpy as np
 
 from pipeline.capture.cells import Cells, cells_of
-from pipeline.nouns.arrays import Floats, Ints
-
-_EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]])
+from pipeline.capture.conservative import EDGES
+from pipeline.nouns.arrays import Bools, Floats, Ints
 
 
 def brick_tets(cells: tuple[int, int, int]) -> Ints:
@@ -28,7 +27,9 @@ def brick_tets(cells: tuple[int, int, int]) -> Ints:
     return np.concatenate(result)
 
 
-def sampled(points: Floats, tets: Ints, velocity: Callable[[Floats], Floats]) -> Cells:
+def sampled(
+    points: Floats, tets: Ints, velocity: Callable[[Floats], Floats], opening: Callable[[Floats], Bools] | None = None
+) -> Cells:
     """Take a velocity at the nodes of a mesh with straight edges.
 
     Parameters
@@ -36,12 +37,14 @@ def sampled(points: Floats, tets: Ints, velocity: Callable[[Floats], Floats]) ->
     points : (n, 3) array
     tets : (m, 4) int array
     velocity : function of (k, 3) places to (k, 3) velocities
+    opening : function of (k, 3) places to (k,) bools, optional
+        Where air that the sampled velocity lacks comes from; the outlet unless given.
     """
-    pairs = np.sort(tets[:, _EDGES], axis=2).reshape(-1, 2)
+    pairs = np.sort(tets[:, EDGES], axis=2).reshape(-1, 2)
     ends, edge = np.unique(pairs, axis=0, return_inverse=True)
     nodes = np.hstack([tets, len(points) + edge.reshape(-1, 6)])
     position = np.vstack([points, points[ends].mean(axis=1)])
-    return cells_of(nodes, position, velocity(position))
+    return cells_of(nodes, position, velocity(position), opening=None if opening is None else opening(position))
 
 
 def brick(lower: Floats, upper: Floats, cells: tuple[int, int, int]) -> tuple[Floats, Ints]:
@@ -59,6 +62,11 @@ def half_ring(outer: float, depth: float, cells: tuple[int, int]) -> tuple[Float
     # angle 0 is upstream; radius, y and angle are right-handed as x, y and z are
     points = np.stack([r * np.sin(theta), y, -r * np.cos(theta)], axis=-1).reshape(-1, 3)
     return points, brick_tets((across, 1, around))
+
+
+def on_rim(outer: float) -> Callable[[Floats], Bools]:
+    """Whether a place of a half ring is on its outer rim."""
+    return lambda places: np.hypot(places[:, 0], places[:, 2]) > 0.999 * outer
 
 
 def kuwabara(solidity: float) -> Callable[[Floats], Floats]:

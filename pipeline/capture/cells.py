@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pipeline.capture.conservative import EDGES, conserved
 from pipeline.geometry.cells import matched_pairs
 from pipeline.geometry.compiled import compiled
 from pipeline.geometry.tets import FACES, volumes
@@ -15,11 +16,11 @@ from pipeline.nouns.arrays import Bools, Floats, Ints
 _OPPOSITE = np.array([3, 2, 1, 0])
 """The vertex that lies against each of `FACES`."""
 
-_EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]])
-"""Ends of the edge that nodes 4 to 9 of a tetrahedron stand on, as VTK orders them."""
-
 _OUTSIDE = -1e-9
 """A barycentric coordinate below this lies behind the face; above it rounding alone may have put it there."""
+
+
+_TURNS = 4  # cells with bent faces that a place is looked for in
 
 
 class Cells(NamedTuple):
@@ -39,7 +40,9 @@ class Cells(NamedTuple):
         Of the nodes; those of curved edges lie on the true fibers.
     curved : (m,) bool array
         Whether an edge's middle is not halfway between its ends.
-    velocity : (n, 3) array [m/s]
+    flux : (m, 10, 3) array
+        At the nodes of each cell: the velocity [m/s] where it is straight, the flux density [m3/s] of `Conserved` where
+        it is curved; free of divergence.
     size : (m,) array [m]
         Edge of the regular tetrahedron of the same volume.
     near : (i, j, k) int array
@@ -56,14 +59,16 @@ class Cells(NamedTuple):
     nodes: Ints
     position: Floats
     curved: Bools
-    velocity: Floats
+    flux: Floats
     size: Floats
     near: Ints
     lower: Floats
     cube: Floats
 
 
-def cells_of(nodes: Ints, position: Floats, velocity: Floats) -> Cells:
+def cells_of(
+    nodes: Ints, position: Floats, velocity: Floats, through: Floats | None = None, opening: Bools | None = None
+) -> Cells:
     """Prepare a mesh and the velocity at its nodes for tracking.
 
     Parameters
@@ -71,6 +76,10 @@ def cells_of(nodes: Ints, position: Floats, velocity: Floats) -> Cells:
     nodes : (m, 10) int array
         As in `Cells`; the tetrahedra of the vertices are positive.
     position, velocity : (n, 3) arrays [m], [m/s]
+    through : (m, 4) array [m3/s], optional
+        Flux out of the face against each vertex, where it is known.
+    opening : (n,) bool array, optional
+        Nodes of the openings that take the air which the velocity lacks; those of highest z unless given.
 
     Returns
     -------
@@ -83,7 +92,7 @@ def cells_of(nodes: Ints, position: Floats, velocity: Floats) -> Cells:
     sides = corners[:, 1:] - corners[:, :1]
     # rows are the sides: a place is origin + sides^T (l1, l2, l3)
     inverse = np.linalg.inv(np.swapaxes(sides, 1, 2))
-    middle = 0.5 * (position[nodes[:, _EDGES[:, 0]]] + position[nodes[:, _EDGES[:, 1]]])
+    middle = 0.5 * (position[nodes[:, EDGES[:, 0]]] + position[nodes[:, EDGES[:, 1]]])
     size = (6.0 * math.sqrt(2.0) * volumes(position, tets)) ** (1.0 / 3.0)
     off = np.linalg.norm(position[nodes[:, 4:]] - middle, axis=2).max(axis=1)
     triangles = tets[:, FACES].reshape(-1, 3)
@@ -92,6 +101,15 @@ def cells_of(nodes: Ints, position: Floats, velocity: Floats) -> Cells:
     flat[first], flat[second] = second // 4, first // 4
     neighbor = np.empty((len(tets), 4), np.int64)
     neighbor[:, _OPPOSITE] = flat.reshape(-1, 4)
+    if opening is None:
+        low, high = position[tets, 2].min(), position[tets, 2].max()
+        opening = position[:, 2] >= high - 1e-9 * (high - low)
+    at_opening = opening[tets]
+    free = (at_opening.sum(axis=1, keepdims=True) - at_opening == 3) & (neighbor < 0)
+    flux = conserved(nodes, position, velocity, neighbor, free, through).flux
+    curved = off > 1e-6 * size
+    straight = sides[~curved]
+    flux[~curved] = flux[~curved] @ straight / np.linalg.det(straight)[:, None, None]
     lower, upper = position[tets].min(axis=(0, 1)), position[tets].max(axis=(0, 1))
     shape = _grid_shape(upper - lower, len(tets))
     cube = (upper - lower) / shape
@@ -103,8 +121,8 @@ def cells_of(nodes: Ints, position: Floats, velocity: Floats) -> Cells:
         neighbor=neighbor,
         nodes=np.ascontiguousarray(nodes),
         position=np.ascontiguousarray(position),
-        curved=off > 1e-6 * size,
-        velocity=np.ascontiguousarray(velocity),
+        curved=curved,
+        flux=flux,
         size=size,
         near=np.ascontiguousarray(near, dtype=np.int64),
         lower=lower,
@@ -168,13 +186,36 @@ def walked(x: float, y: float, z: float, cell: int, cells: Cells) -> tuple[int, 
 def velocity_in(x: float, y: float, z: float, cell: int, cells: Cells) -> tuple[float, float, float]:
     """Give the air's velocity at a place of a cell, by its ten nodes; outside the cell, that at its nearest side."""
     a, b, c, d = shares(x, y, z, cell, cells)
-    if cells.curved[cell]:
-        a, b, c, d = _in_curved(x, y, z, cell, cells, b, c, d)
-    if min(min(a, b), min(c, d)) < 0.0:
-        a, b, c, d = max(a, 0.0), max(b, 0.0), max(c, 0.0), max(d, 0.0)
-        total = a + b + c + d
-        a, b, c, d = a / total, b / total, c / total, d / total
-    return _blended(cells.velocity, cells.nodes[cell], a, b, c, d)
+    if not cells.curved[cell]:
+        a, b, c, d = _clipped(a, b, c, d)
+        return _blended(cells.flux[cell], a, b, c, d)
+    for _ in range(_TURNS):
+        b, c, d = _nearer(x, y, z, cell, cells, b, c, d)
+        a = 1.0 - b - c - d
+        # a bent face is not where the straight cell has it
+        face, least = 0, a
+        for other, share in ((1, b), (2, c), (3, d)):
+            if share < least:
+                face, least = other, share
+        following = cells.neighbor[cell, face]
+        if least >= -1e-6 or following < 0 or not cells.curved[following]:
+            break
+        cell = following
+        _, b, c, d = shares(x, y, z, cell, cells)
+    a, b, c, d = _clipped(a, b, c, d)
+    u, v, w = _blended(cells.flux[cell], a, b, c, d)
+    xx, xy, xz, yx, yy, yz, zx, zy, zz = _columns(cell, cells, b, c, d)
+    size = xx * (yy * zz - yz * zy) + xy * (yz * zx - yx * zz) + xz * (yx * zy - yy * zx)
+    return (xx * u + yx * v + zx * w) / size, (xy * u + yy * v + zy * w) / size, (xz * u + yz * v + zz * w) / size
+
+
+@compiled
+def _clipped(a: float, b: float, c: float, d: float) -> tuple[float, float, float, float]:
+    if min(min(a, b), min(c, d)) >= 0.0:
+        return a, b, c, d
+    a, b, c, d = max(a, 0.0), max(b, 0.0), max(c, 0.0), max(d, 0.0)
+    total = a + b + c + d
+    return a / total, b / total, c / total, d / total
 
 
 @compiled
@@ -189,46 +230,63 @@ def inflow(places: Floats, cells: Cells) -> Floats:
 
 
 @compiled
-def _blended(values: Floats, nodes: Ints, a: float, b: float, c: float, d: float) -> tuple[float, float, float]:
+def _blended(values: Floats, a: float, b: float, c: float, d: float) -> tuple[float, float, float]:
+    shares = (
+        a * (2.0 * a - 1.0), b * (2.0 * b - 1.0), c * (2.0 * c - 1.0), d * (2.0 * d - 1.0),
+        4.0 * a * b, 4.0 * b * c, 4.0 * a * c, 4.0 * a * d, 4.0 * b * d, 4.0 * c * d,
+    )  # fmt: skip
     u, v, w = 0.0, 0.0, 0.0
     for n in range(10):
-        if n == 0:
-            share = a * (2.0 * a - 1.0)
-        elif n == 1:
-            share = b * (2.0 * b - 1.0)
-        elif n == 2:
-            share = c * (2.0 * c - 1.0)
-        elif n == 3:
-            share = d * (2.0 * d - 1.0)
-        elif n == 4:
-            share = 4.0 * a * b
-        elif n == 5:
-            share = 4.0 * b * c
-        elif n == 6:
-            share = 4.0 * a * c
-        elif n == 7:
-            share = 4.0 * a * d
-        elif n == 8:
-            share = 4.0 * b * d
-        else:
-            share = 4.0 * c * d
-        node = nodes[n]
-        u += share * values[node, 0]
-        v += share * values[node, 1]
-        w += share * values[node, 2]
+        u += shares[n] * values[n, 0]
+        v += shares[n] * values[n, 1]
+        w += shares[n] * values[n, 2]
     return u, v, w
 
 
+# the three derivatives of a place by barycentric coordinates 1 to 3
+_Columns = tuple[float, float, float, float, float, float, float, float, float]
+
+
 @compiled
-def _in_curved(
+def _columns(cell: int, cells: Cells, b: float, c: float, d: float) -> _Columns:
+    a = 1.0 - b - c - d
+    nodes, position = cells.nodes[cell], cells.position
+    xx, xy, xz, yx, yy, yz, zx, zy, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    by = (
+        (1.0 - 4.0 * a, 1.0 - 4.0 * a, 1.0 - 4.0 * a), (4.0 * b - 1.0, 0.0, 0.0), (0.0, 4.0 * c - 1.0, 0.0),
+        (0.0, 0.0, 4.0 * d - 1.0), (4.0 * (a - b), -4.0 * b, -4.0 * b), (4.0 * c, 4.0 * b, 0.0),
+        (-4.0 * c, 4.0 * (a - c), -4.0 * c), (-4.0 * d, -4.0 * d, 4.0 * (a - d)), (4.0 * d, 0.0, 4.0 * b),
+        (0.0, 4.0 * d, 4.0 * c),
+    )  # fmt: skip
+    for n in range(10):
+        x, y, z = position[nodes[n], 0], position[nodes[n], 1], position[nodes[n], 2]
+        one, two, three = by[n]
+        xx, xy, xz = xx + one * x, xy + one * y, xz + one * z
+        yx, yy, yz = yx + two * x, yy + two * y, yz + two * z
+        zx, zy, zz = zx + three * x, zy + three * y, zz + three * z
+    return xx, xy, xz, yx, yy, yz, zx, zy, zz
+
+
+@compiled
+def _nearer(
     x: float, y: float, z: float, cell: int, cells: Cells, b: float, c: float, d: float
-) -> tuple[float, float, float, float]:
-    # edges bend by a few hundredths of their length: the straight cell's inverse serves as the slope
-    m = cells.inverse[cell]
-    for _ in range(4):
-        px, py, pz = _blended(cells.position, cells.nodes[cell], 1.0 - b - c - d, b, c, d)
-        dx, dy, dz = x - px, y - py, z - pz
-        b += m[0, 0] * dx + m[0, 1] * dy + m[0, 2] * dz
-        c += m[1, 0] * dx + m[1, 1] * dy + m[1, 2] * dz
-        d += m[2, 0] * dx + m[2, 1] * dy + m[2, 2] * dz
-    return 1.0 - b - c - d, b, c, d
+) -> tuple[float, float, float]:
+    """Barycentric coordinates of a place in a curved cell, by Newton's method from a guess."""
+    nodes, position = cells.nodes[cell], cells.position
+    for _ in range(3):
+        a = 1.0 - b - c - d
+        shares = (
+            a * (2.0 * a - 1.0), b * (2.0 * b - 1.0), c * (2.0 * c - 1.0), d * (2.0 * d - 1.0),
+            4.0 * a * b, 4.0 * b * c, 4.0 * a * c, 4.0 * a * d, 4.0 * b * d, 4.0 * c * d,
+        )  # fmt: skip
+        dx, dy, dz = x, y, z
+        for n in range(10):
+            dx -= shares[n] * position[nodes[n], 0]
+            dy -= shares[n] * position[nodes[n], 1]
+            dz -= shares[n] * position[nodes[n], 2]
+        xx, xy, xz, yx, yy, yz, zx, zy, zz = _columns(cell, cells, b, c, d)
+        size = xx * (yy * zz - yz * zy) + xy * (yz * zx - yx * zz) + xz * (yx * zy - yy * zx)
+        b += (dx * (yy * zz - yz * zy) + dy * (yz * zx - yx * zz) + dz * (yx * zy - yy * zx)) / size
+        c += (dx * (zy * xz - zz * xy) + dy * (zz * xx - zx * xz) + dz * (zx * xy - zy * xx)) / size
+        d += (dx * (xy * yz - xz * yy) + dy * (xz * yx - xx * yz) + dz * (xx * yy - xy * yx)) / size
+    return b, c, d

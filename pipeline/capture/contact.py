@@ -11,7 +11,7 @@ from pipeline.geometry.compiled import compiled
 from pipeline.geometry.fibers import short_pieces, to_piece
 from pipeline.nouns.arrays import Bools, Floats, Ints
 
-_MOST_CUBES = 4_000_000
+_MOST_CUBES = 1_000_000
 
 
 class FiberGrid(NamedTuple):
@@ -71,7 +71,7 @@ def fiber_grid(
     """
     start, end, radius, flat, source = short_pieces(start, end, radius, flat)
     extent = upper - lower
-    size = max(float(radius.min()), (float(np.prod(extent)) / _MOST_CUBES) ** (1.0 / 3.0))
+    size = max(float(radius.mean()), (float(np.prod(extent)) / _MOST_CUBES) ** (1.0 / 3.0))
     shape = np.maximum(np.ceil(extent / size).astype(np.int64), 1)
     first, member = _sorted_in(start, end, radius, flat, lower, shape, size, reach)
     return FiberGrid(start, end, radius, flat, source, first, member, lower, shape, size, reach)

@@ -72,8 +72,9 @@ def fastest_inflow(duct: Duct, cells: Cells) -> float:
     StageError
         If no air comes in.
     """
-    at_inlet = np.abs(cells.position[:, 2] - duct.inlet) <= 1e-9 * (duct.outlet - duct.inlet)
-    fastest = float(cells.velocity[at_inlet, 2].max(initial=0.0))
+    straight = ~cells.curved
+    at_inlet = np.abs(cells.position[cells.nodes[straight], 2] - duct.inlet) <= 1e-9 * (duct.outlet - duct.inlet)
+    fastest = float(cells.flux[straight, :, 2][at_inlet].max(initial=0.0))
     if fastest <= 0.0:
         raise StageError("no air enters through the inlet; run the solve stage again with --force solve")
     return fastest

@@ -13,7 +13,7 @@ from pipeline.capture.intervals import share_interval
 from pipeline.capture.langevin import Motion
 from pipeline.capture.trajectories import CAPTURED, PASSED, TIMED_OUT, Duct, tracked
 from pipeline.nouns.arrays import Floats
-from validation.closed_flows import brick, half_ring, kuwabara, kuwabara_interception, sampled
+from validation.closed_flows import brick, half_ring, kuwabara, kuwabara_interception, on_rim, sampled
 from validation.exact_capture import plates_penetration
 
 
@@ -22,7 +22,7 @@ def test_interception_in_kuwabaras_flow_is_exact_to_half_a_percent(ratio: float)
     solidity, count = 0.1, 1000
     outer, exact = solidity**-0.5, kuwabara_interception(solidity, ratio)
     points, tets = half_ring(outer, 0.3, (16, 32))
-    cells = sampled(points, tets, kuwabara(solidity))
+    cells = sampled(points, tets, kuwabara(solidity), on_rim(outer))
     axis = np.array([[0.0, -5.0, 0.0]])
     grid = fiber_grid(axis, -axis, np.ones(1), np.zeros((1, 2), bool), points.min(0), points.max(0), 2.0)
     duct = Duct(0.0, 10.0, 0.0, 0.3, -10.0, outer, False)
