@@ -14,12 +14,12 @@ from pipeline.geometry.box import Box
 from pipeline.geometry.solids import box_minus
 from pipeline.geometry.triangles import Floats, Ints, connected_pieces, signed_volumes, winding_number
 from pipeline.nouns.domain import FluidDomain
-from pipeline.nouns.patches import FIBERS, INLET, OUTLET, PATCHES, SIDES
+from pipeline.nouns.patches import DUCT, FIBERS, INLET, OUTLET, PATCHES
 from pipeline.nouns.surface import Surface
 from pipeline.progress import Progress, silent
 
-_PLANES = (*SIDES, INLET, OUTLET)
-"""Patches in the order of a box's planes: xmin, xmax, ymin, ymax, zmin, zmax."""
+_PLANES = [name for _, _, name in sorted((each.axis, each.end, each.name) for each in DUCT if each.axis is not None)]
+"""Patches in the order of a box's planes: lower and upper along x, y, z."""
 
 CLEARANCE = 0.1
 """Least distance between fibers and a plenum's end, in mean fiber diameters: the mesher's envelope is half of it."""

@@ -13,7 +13,7 @@ import numpy as np
 from pipeline.geometry.box import Box
 from pipeline.geometry.triangles import area_vectors
 from pipeline.nouns.arrays import Floats, Ints
-from pipeline.nouns.patches import FIBERS, INLET, OUTLET, PATCHES, SIDES
+from pipeline.nouns.patches import DUCT, FIBERS, LOWER, PATCHES, UPPER
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,15 +28,12 @@ class Plane:
 
 def planes(box: Box) -> tuple[Plane, ...]:
     """Give the six faces of the duct with the index of their patch."""
-    named = {
-        INLET: (2, box.lower[2], -1),
-        OUTLET: (2, box.upper[2], 1),
-        SIDES[0]: (0, box.lower[0], -1),
-        SIDES[1]: (0, box.upper[0], 1),
-        SIDES[2]: (1, box.lower[1], -1),
-        SIDES[3]: (1, box.upper[1], 1),
-    }
-    return tuple(Plane(PATCHES.index(name), *where) for name, where in named.items())
+    ends = {LOWER: (box.lower, -1), UPPER: (box.upper, 1)}
+    return tuple(
+        Plane(number, patch.axis, ends[patch.end][0][patch.axis], ends[patch.end][1])
+        for number, patch in enumerate(DUCT)
+        if patch.axis is not None
+    )
 
 
 # A boundary face belongs to a plane when it faces the plane's way: cos 35 degrees tells a plane's own triangles,

@@ -11,16 +11,17 @@ from pathlib import Path
 
 from pipeline.errors import StageError
 from pipeline.nouns.mesh import FaceMesh, Patch
-from pipeline.nouns.patches import FIBERS, INLET, OUTLET, SIDES
+from pipeline.nouns.patches import DUCT
 from pipeline.progress import Progress, silent
 
 _INTERIOR = (2, "interior")
-_CONDITIONS = {
-    INLET: (10, "velocity-inlet"),
-    OUTLET: (5, "pressure-outlet"),
-    FIBERS: (3, "wall"),
-    **dict.fromkeys(SIDES, (7, "symmetry")),
+_BY_ROLE = {
+    "inlet": (10, "velocity-inlet"),
+    "outlet": (5, "pressure-outlet"),
+    "wall": (3, "wall"),
+    "side": (7, "symmetry"),
 }
+_CONDITIONS = {patch.name: _BY_ROLE[patch.role] for patch in DUCT}
 """Number and name of the condition that a patch gets. Fluent's symmetry is its frictionless wall too."""
 FLUID_ZONE = 2
 _TETRAHEDRA, _POLYHEDRA = 2, 7

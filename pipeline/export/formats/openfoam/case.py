@@ -12,7 +12,7 @@ from pipeline.export.formats.openfoam.slip import FiberSlip
 from pipeline.export.settings import ExportSettings
 from pipeline.nouns.flow import Flow
 from pipeline.nouns.mesh import FaceMesh, Patch
-from pipeline.nouns.patches import FIBERS, INLET, OUTLET, SIDES
+from pipeline.nouns.patches import BY_NAME, FIBERS, INLET, OUTLET, SIDES
 from pipeline.openfoam.decompose import format_decompose
 from pipeline.progress import Progress, silent
 
@@ -84,7 +84,7 @@ def _refuse_odd_patches(mesh: FaceMesh) -> None:
             f"the mesh has no face in patch {' and '.join(missing)}: no air gets through; "
             "lengthen enclosure.inlet and enclosure.outlet"
         )
-    unknown = sorted(set(counts) - {INLET, OUTLET, FIBERS, *SIDES})
+    unknown = sorted(set(counts) - set(BY_NAME))
     if unknown:
         raise StageError(f"no boundary condition is known for patch {', '.join(unknown)}")
 
@@ -96,14 +96,14 @@ def _patch_type(mesh: FaceMesh, patch: Patch, sides: str) -> str:
         return "type symmetryPlane;" if _is_exact_plane(mesh, patch) else "type symmetry;"
     if patch.name in SIDES and sides == "cyclic":
         # entries about the transformation differ between OpenFOAM's dialects, and none is needed
-        return f"type cyclic; neighbourPatch {SIDES[SIDES.index(patch.name) ^ 1]};"
+        return f"type cyclic; neighbourPatch {BY_NAME[patch.name].opposite.name};"
     return "type patch;"
 
 
 def _is_exact_plane(mesh: FaceMesh, patch: Patch) -> bool:
     """Whether one coordinate is the same to the last bit: OpenFOAM stops at a tilt of 3e-8."""
     corners = mesh.corners[mesh.offsets[patch.start] : mesh.offsets[patch.start + patch.count]]
-    axis = SIDES.index(patch.name) // 2
+    axis = BY_NAME[patch.name].axis
     return len(set(mesh.points[corners, axis].tolist())) == 1
 
 

@@ -8,7 +8,7 @@ from pipeline.errors import StageError
 from pipeline.geometry.cells import rows_of
 from pipeline.nouns.arrays import Ints
 from pipeline.nouns.mesh import FaceMesh, Patch
-from pipeline.nouns.patches import SIDES
+from pipeline.nouns.patches import BY_NAME, DUCT, LOWER
 
 TOLERANCE = 1e-6
 """Largest distance of two corners that are the same, over the distance of the sides; OpenFOAM takes 1e-4."""
@@ -34,7 +34,7 @@ def with_matching_sides(mesh: FaceMesh) -> FaceMesh:
     """
     triangles, owner = mesh.triangles().copy(), mesh.owner.copy()
     patches = {patch.name: patch for patch in mesh.patches}
-    for low, high in (SIDES[:2], SIDES[2:]):
+    for low, high in ((side.name, side.opposite.name) for side in DUCT if side.role == "side" and side.end == LOWER):
         if low in patches or high in patches:
             _match(mesh, patches, low, high, triangles, owner)
     return FaceMesh(mesh.points, triangles.ravel(), mesh.offsets, owner, mesh.neighbour, mesh.cells, mesh.patches)
@@ -45,7 +45,9 @@ def _match(mesh: FaceMesh, patches: dict[str, Patch], low: str, high: str, trian
         counts = " and ".join(str(patches[name].count) if name in patches else "no" for name in (low, high))
         raise _refusal(low, high, f"have {counts} faces")
     rows = {name: slice(patches[name].start, patches[name].start + patches[name].count) for name in (low, high)}
-    image = _images(mesh, triangles[rows[low]], triangles[rows[high]], SIDES.index(low) // 2)
+    axis = BY_NAME[low].axis
+    assert axis is not None
+    image = _images(mesh, triangles[rows[low]], triangles[rows[high]], axis)
     partner = rows_of(image[:, [0, 2, 1]], triangles[rows[high]]) if (image >= 0).all() else np.array([-1])
     if (partner < 0).any():
         lonely = int((partner < 0).sum()) if len(partner) == len(image) else int((image < 0).any(axis=1).sum())

@@ -10,20 +10,21 @@ they lose 0.3 %, with the creases between fibers given too 2.3 %; with creases f
 
 from pipeline.mesh.engines.snappy.layout import Layout
 from pipeline.nouns.arrays import Floats, Ints
-from pipeline.nouns.patches import FIBERS, INLET, OUTLET, SIDES
+from pipeline.nouns.patches import DUCT, FIBERS, LOWER, UPPER
 from pipeline.openfoam.foam_file import format_dictionary
 
 SURFACE = "fibers.obj"
 
-# Corners of the block's faces, outward; corner 4 z + (0, 1, 3, 2)[x + 2 y]
-_FACES = {
-    INLET: "0 3 2 1",
-    OUTLET: "4 5 6 7",
-    SIDES[0]: "0 4 7 3",
-    SIDES[1]: "1 2 6 5",
-    SIDES[2]: "0 1 5 4",
-    SIDES[3]: "3 7 6 2",
+# Corners of a block's faces by axis and end, outward; corner 4 z + (0, 1, 3, 2)[x + 2 y]
+_CORNERS = {
+    (0, LOWER): "0 4 7 3",
+    (0, UPPER): "1 2 6 5",
+    (1, LOWER): "0 1 5 4",
+    (1, UPPER): "3 7 6 2",
+    (2, LOWER): "0 3 2 1",
+    (2, UPPER): "4 5 6 7",
 }
+_FACES = {patch.name: _CORNERS[patch.axis, patch.end] for patch in DUCT if patch.axis is not None}
 
 
 def format_vector(vector: tuple[float, float, float]) -> str:
