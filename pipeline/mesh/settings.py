@@ -30,7 +30,7 @@ class SharedSettings(BaseModel):
         default=DEFAULT, description="The mesher: " + "; ".join(f'"{e.name}": {e.meaning}' for e in ENGINES.values())
     )
     edge: PositiveRatio = Field(
-        default=0.6, le=20, description="Edge length of the tetrahedra at the fibers, in mean fiber diameters."
+        default=0.6, le=20, description="Edge length of the tetrahedra at a fiber, in diameters of that fiber."
     )
     growth: Ratio = Field(
         default=1.0,

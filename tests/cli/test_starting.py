@@ -100,7 +100,7 @@ def test_the_reference_in_the_docs_is_what_the_settings_say(fibertwin: Fibertwin
 
 def test_the_reference_has_every_key_with_its_range(fibertwin: Fibertwin) -> None:
     said = fibertwin("schema", "--markdown").out
-    assert "| `stop_energy` | number or percentage &gt;= 3 | `100` |" in said
+    assert "| `stop_energy` | number or percentage &gt;= 3 | `1000` |" in said
     assert '| `time_limit` | time &gt; 0 | `"2 h"` |' in said
     assert "### [mat.fiber_diameter.parts]" in said
 

@@ -113,7 +113,7 @@ def across(edge: float) -> tuple[FluidDomain, TetmeshSettings]:
     slab = Box((0.0, 0.0, 4e-6), (10e-6, 10e-6, 6.5e-6))
     mat = Mat(nodes, np.array([0, 2]), np.array([0.5 * DIAMETER]), slab, -1, "by hand")
     surface = unite(mat, SurfaceSettings(sides=96, ring_spacing=0.5, smallest_edge=0.0))
-    return enclose(surface, EnclosureSettings(inlet=3e-6, outlet=3e-6)), TetmeshSettings(edge=edge)
+    return enclose(surface, EnclosureSettings(inlet=3e-6, outlet=3e-6)), TetmeshSettings(engine="lattice", edge=edge)
 
 
 def wall_distances(edge: float) -> Floats:
@@ -166,7 +166,7 @@ def test_the_walls_distance_from_the_true_fibers_is_measured() -> None:
 def test_walls_farther_off_than_allowed_are_refused_with_what_to_do() -> None:
     domain, _ = across(0.5)
     with pytest.raises(StageError, match=r"allowed is 0.001; lower tetmesh.edge"):
-        fill(domain, TetmeshSettings(edge=0.5, deviation=0.001))
+        fill(domain, TetmeshSettings(engine="lattice", edge=0.5, deviation=0.001))
 
 
 def test_one_case_gives_one_mesh() -> None:
@@ -187,7 +187,7 @@ def test_random_mats_keep_every_limit(contact: str, seed: int) -> None:
     )  # fmt: skip
     surface = unite(generate(settings), SurfaceSettings())
     domain = enclose(surface, EnclosureSettings(inlet=4e-6, outlet=4e-6))
-    mesh, measures = fill(domain, TetmeshSettings(edge=0.7))
+    mesh, measures = fill(domain, TetmeshSettings(engine="lattice", edge=0.7))
     report = judge(mesh)
     assert report.passed, report.reasons
     assert measures.faulty_cells == 0
@@ -202,4 +202,4 @@ def test_random_mats_keep_every_limit(contact: str, seed: int) -> None:
 def test_a_lattice_beyond_memory_is_refused_with_what_to_do() -> None:
     domain, _ = across(0.6)
     with pytest.raises(StageError, match=r"lattice of 12 x 12 x 10 cubes.*raise tetmesh.edge"):
-        fill(domain, TetmeshSettings(edge=0.6, memory_limit=1e5))
+        fill(domain, TetmeshSettings(engine="lattice", edge=0.6, memory_limit=1e5))

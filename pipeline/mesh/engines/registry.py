@@ -9,5 +9,5 @@ from pipeline.mesh.engines.snappy.engine import SNAPPY
 ENGINES = {engine.name: engine for engine in (TETWILD, LATTICE, SNAPPY)}
 """By the name that a case file has."""
 
-DEFAULT = LATTICE.name
+DEFAULT = TETWILD.name
 """The engine of a case that names none."""

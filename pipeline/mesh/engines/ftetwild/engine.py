@@ -19,21 +19,22 @@ if TYPE_CHECKING:
 
 
 class TetwildSettings(EngineSettings):
-    """What only fTetWild reads; lengths are in mean fiber diameters."""
+    """What only fTetWild reads."""
 
     envelope: PositiveRatio = Field(
         default=0.04,
         le=0.25,
-        description="How far the mesh's boundary may stray from the fibers' surface, in mean fiber diameters.",
+        description="How far the mesh's boundary may stray from the fibers' surface, in diameters of the thinnest "
+        "fiber.",
     )
     passes: int = Field(
-        default=2,
+        default=1,
         ge=1,
         le=200,
         description="Rounds of splitting, collapsing, swapping and smoothing before the edge lengths are refined.",
     )
     stop_energy: PositiveRatio = Field(
-        default=100.0,
+        default=1000.0,
         ge=3.0,
         description="Conformal energy of the worst tetrahedron at which rounds end (3 is ideal); "
         "the few cells that a solver would object to are mended afterwards.",

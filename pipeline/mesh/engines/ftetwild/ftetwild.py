@@ -52,13 +52,14 @@ def tetrahedralized(domain: FluidDomain, settings: TetmeshSettings, unit: float,
     # fTetWild compares an area with 1e-8 of a length: only geometry of order one survives that
     middle = 0.5 * (np.array(domain.box.lower) + np.array(domain.box.upper))
     own = settings.own(TetwildSettings)
+    envelope = own.envelope * 2.0 * float(domain.radius.min())
     for _ in range(_ATTEMPTS):
         raw = _run((domain.points - middle) / unit, domain, settings, tell)
         tell("finding the patches")
         points, tets = used_points(raw.points * unit + middle, raw.tets)
         faces, _ = boundary(tets)
         # two envelopes: the mesher bounds the distance to the surface, not the distance along the plane's normal
-        patch = assign(points, faces, domain.box, tolerance=2.0 * own.envelope * unit)
+        patch = assign(points, faces, domain.box, tolerance=2.0 * envelope)
         points = flattened(points, faces, patch, domain.box)
         tets = _without_flat_sides(points, tets, domain.box)
         # fTetWild may leave triangles of its input out, by chance: a dent in a plane then counts as fiber, which the
@@ -66,7 +67,7 @@ def tetrahedralized(domain: FluidDomain, settings: TetmeshSettings, unit: float,
         errors = _plane_errors(points, tets, domain)
         worst = max(errors, key=lambda name: abs(errors[name]))
         if abs(errors[worst]) <= _PLANE_ERROR:
-            return RawMesh(points, tets, _WALL_LEASH * own.envelope * unit, raw.seconds, raw.peak_memory)
+            return RawMesh(points, tets, _WALL_LEASH * envelope, raw.seconds, raw.peak_memory)
         tell(f"the mesher lost part of {worst}: meshing again")
     raise StageError(
         f"the mesher lost part of the patch {worst} {_ATTEMPTS} times, whose area is off by {errors[worst]:+.2%} "
@@ -93,18 +94,17 @@ def _area(points: Floats, faces: Ints) -> float:
 
 def _run(points: Floats, domain: FluidDomain, settings: TetmeshSettings, tell: Progress) -> Meshed:
     own = settings.own(TetwildSettings)
+    thinnest = 2.0 * float(domain.radius.min()) / domain.mean_diameter
     diagonal = float(np.linalg.norm(np.ptp(points, axis=0)))
-    on_fibers = np.unique(domain.triangles[domain.patch == domain.patches.index(FIBERS)])
-    sizes = size_field(
-        points.min(axis=0), points.max(axis=0), points[on_fibers], settings.edge, settings.growth, settings.largest_edge
-    )
+    sizes = sizes_wanted(points, domain, settings)
     options = {
         # the field can only shorten the mesher's own edge length
         "edge_length_abs": float(sizes["bg_values"].max()),
         # relative to the diagonal there, to the fiber here: a longer plenum must not loosen the fibers
-        "epsilon": own.envelope / diagonal,
+        "epsilon": own.envelope * thinnest / diagonal,
         "stop_energy": own.stop_energy,
         "num_opt_iter": own.passes,
+        "simplify": False,  # the surface is tidy already; its own simplification takes a fifth of the time
         "num_threads": 1,  # a second one saves a tenth of the time
         "vtk_ordering": True,  # else every volume is negative
         "quiet": False,  # the log is what progress is read from
@@ -112,6 +112,25 @@ def _run(points: Floats, domain: FluidDomain, settings: TetmeshSettings, tell: P
     }
     limits = Limits(own.time_limit, memory_allowed(settings.memory_limit))
     return run_child(points, domain.triangles, options, sizes, limits, tell)
+
+
+def sizes_wanted(points: Floats, domain: FluidDomain, settings: TetmeshSettings) -> dict[str, np.ndarray]:
+    """Give the background mesh with the edge length wanted at each place; lengths in mean fiber diameters.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        The domain's, in mean fiber diameters.
+    domain : FluidDomain
+    settings : TetmeshSettings
+    """
+    walls = domain.fiber >= 0
+    corner, first = np.unique(domain.triangles[walls], return_index=True)
+    diameter = 2.0 * domain.radius[np.repeat(domain.fiber[walls], 3)[first]] / domain.mean_diameter
+    return size_field(
+        points.min(axis=0), points.max(axis=0), points[corner], diameter,
+        settings.edge, settings.growth, settings.largest_edge,
+    )  # fmt: skip
 
 
 def _without_flat_sides(points: Floats, tets: Ints, box: Box) -> Ints:

@@ -1,0 +1,61 @@
+"""FTetWild as an engine: every limit kept, walls within the envelope, and no fiber lost among thicker ones."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pipeline.case import read_case
+from pipeline.enclosure.duct import enclose
+from pipeline.enclosure.settings import EnclosureSettings
+from pipeline.geometry.box import Box
+from pipeline.mat.generate import generate
+from pipeline.mesh.engines.ftetwild.engine import TetwildSettings
+from pipeline.mesh.fill import fill
+from pipeline.mesh.settings import TetmeshSettings
+from pipeline.nouns.domain import FluidDomain
+from pipeline.nouns.fibers import Mat
+from pipeline.quality.judge import judge
+from pipeline.surface.settings import SurfaceSettings
+from pipeline.surface.union import unite
+
+SMOKE = Path(__file__).parents[2] / "cases/smoke.toml"
+UM = 1e-6
+
+
+def crossing(thick: float, thin: float) -> FluidDomain:
+    """A thick fiber along x and a thin one along y that passes above it, in a box of four thick diameters."""
+    side = 4 * thick
+    nodes = np.array([[0, 0.5 * side, 0.5 * thick], [side, 0.5 * side, 0.5 * thick],
+                      [0.5 * side, 0, thick + thin], [0.5 * side, side, thick + thin]])  # fmt: skip
+    slab = Box((0.0, 0.0, 0.0), (side, side, 2 * thick))
+    mat = Mat(nodes, np.array([0, 2, 4]), 0.5 * np.array([thick, thin]), slab, -1, "two fibers that cross")
+    return enclose(unite(mat, SurfaceSettings()), EnclosureSettings(inlet=2 * thick, outlet=2 * thick))
+
+
+def test_the_smoke_case_keeps_every_limit_and_its_walls_the_envelope() -> None:
+    case = read_case(SMOKE)
+    assert case.mat.generator == "layered"
+    domain = enclose(unite(generate(case.mat), case.surface), case.enclosure)
+    settings = TetmeshSettings(engine="tetwild", edge=0.8, largest_edge=2.0)
+    mesh, measures = fill(domain, settings)
+    assert judge(mesh).verdict == "pass"
+    assert abs(measures.volume_error) < 1e-4
+    assert measures.fidelity is not None
+    # a polygon of ten corners with the circle's volume strays by 0.015 diameters itself
+    assert measures.fidelity.typical_deviation < settings.own(TetwildSettings).envelope + 0.015
+
+
+@pytest.mark.parametrize("ratio", [8.0])
+def test_no_fiber_is_lost_among_thicker_ones(ratio: float) -> None:
+    domain = crossing(1.0 * UM, 1.0 * UM / ratio)
+    mesh, measures = fill(domain, TetmeshSettings(engine="tetwild", edge=0.8))
+    assert measures.fidelity is not None
+    # a fiber that has lost its walls would have none to stand off
+    walls = mesh.triangles()[mesh.patch("fibers")]
+    height = mesh.points[walls].mean(axis=1)[:, 2]
+    assert (height > 1.01 * UM).sum() > 100
+    assert np.abs(measures.fidelity.radius_error).max() < 0.05
+    assert judge(mesh).verdict == "pass"
