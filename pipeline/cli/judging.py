@@ -94,5 +94,5 @@ def _show(report: QualityReport) -> None:
     out.print(plain_table(table.title, table.columns, table.rows))
     patches = ", ".join(f"{name} {count:,}" for name, count in report.patches.items())
     out.print(f"patches by faces: {printable(patches)}", markup=False, highlight=False, soft_wrap=True)
-    for reason in report.reasons:
-        out.print(f"- {reason}", markup=False, highlight=False, soft_wrap=True)
+    for remark in (*report.reasons, *(f"note: {note}" for note in report.notes)):
+        out.print(f"- {remark}", markup=False, highlight=False, soft_wrap=True)

@@ -2,25 +2,19 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
+from pipeline.export.formats.registry import WRITTEN, why_not
 from pipeline.openfoam.foam_file import Encoding
 
-Format = Literal["openfoam", "vtk", "fluent", "gmsh", "abaqus", "nastran", "su2", "medit"]
+if TYPE_CHECKING:
+    Format = str
+else:
+    Format = Literal[tuple(WRITTEN)]
 Dialect = Literal["com", "org"]
 FiberWall = Literal["no_slip", "slip"]
-
-_REFUSED = {
-    **dict.fromkeys(
-        ("stl", "ply", "off", "obj"), "holds a surface, not a volume (the fibers' surface stands in the surface stage)"
-    ),
-    **dict.fromkeys(
-        ("tetgen", "xdmf", "vtu", "tecplot", "ugrid"), "would lose the patches; take openfoam, vtk or gmsh"
-    ),
-    **dict.fromkeys(("med", "cgns", "exodus", "h5m"), "needs HDF5, which is not installed with fibertwin; take gmsh"),
-}
 
 
 class ExportSettings(BaseModel):
@@ -47,8 +41,8 @@ class ExportSettings(BaseModel):
     @classmethod
     def _tell_why_not(cls, formats: object) -> object:
         for name in formats if isinstance(formats, (list, tuple)) else ():
-            if isinstance(name, str) and name in _REFUSED:
-                raise ValueError(f"{name} {_REFUSED[name]}")
+            if isinstance(name, str) and (reason := why_not(name)):
+                raise ValueError(f"{name} {reason}")
         return formats
 
     @field_validator("formats")

@@ -2,23 +2,19 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import shutil
 from collections.abc import Mapping
 from pathlib import Path
 
 from pipeline.errors import StageError
-from pipeline.export.formats.exchange import SUFFIXES, write_exchange
-from pipeline.export.formats.fluent import write_fluent
-from pipeline.export.formats.openfoam.case import write_openfoam
+from pipeline.export.formats.format import Order
 from pipeline.export.formats.openfoam.slip import FiberSlip
-from pipeline.export.formats.su2 import write_su2
-from pipeline.export.formats.vtk import write_vtk
+from pipeline.export.formats.registry import WRITTEN
 from pipeline.export.settings import ExportSettings
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.flow import Flow
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.progress import Progress, silent
-
-_TETRAHEDRA_ONLY = {*SUFFIXES, "su2"}
 
 
 def export(
@@ -32,6 +28,8 @@ def export(
     slip: FiberSlip | None = None,
 ) -> tuple[str, ...]:
     """Write the mesh in every format of `settings` into ``folder/<format>``.
+
+    A format that cannot hold the mesh does not take the others with it: they are written, and the error comes after.
 
     Parameters
     ----------
@@ -55,26 +53,54 @@ def export(
 
     Raises
     ------
-    StageError
-        If a format cannot hold what it is asked to.
+    FormatsFailedError
+        If a format cannot hold what it is asked to; the others are there, and nothing half written.
     """
-    if not mesh.tetrahedral:
-        unfit = [name for name in settings.formats if name in _TETRAHEDRA_ONLY]
-        if unfit:
-            raise StageError(
-                f"{', '.join(unfit)} holds tetrahedra only, and the mesh has other cells: take openfoam, vtk or fluent "
-                "in export.formats, or a tetmesh.engine that makes tetrahedra"
-            )
+    order = Order(settings, flow, sides, fields or {}, slip, progress)
+    failed: dict[str, str] = {}
     for name in settings.formats:
-        place = folder / name
-        if name == "openfoam":
-            write_openfoam(mesh, place, flow, sides, settings, progress, slip)
-        elif name == "vtk":
-            write_vtk(mesh, place, fields or {}, progress)
-        elif name == "fluent":
-            write_fluent(mesh, place / "mesh.msh", sides, progress)
-        elif name == "su2":
-            write_su2(mesh, place / "mesh.su2", progress)
-        else:
-            write_exchange(mesh, place / f"mesh{SUFFIXES[name]}", name, progress)
+        try:
+            write_one(name, mesh, folder, order)
+        except StageError as problem:
+            failed[name] = str(problem)
+    if failed:
+        raise FormatsFailedError(tuple(name for name in settings.formats if name not in failed), failed)
     return settings.formats
+
+
+class FormatsFailedError(StageError):
+    """Some formats could not be written; `written` are there, `failed` says why of the rest."""
+
+    def __init__(self, written: tuple[str, ...], failed: dict[str, str]) -> None:
+        self.written, self.failed = written, failed
+        there = f"{', '.join(written)} {'is' if len(written) == 1 else 'are'} written" if written else "none is written"
+        super().__init__(
+            "; ".join(f"cannot write {name}: {reason}" for name, reason in failed.items())
+            + f" ({there}; take {' and '.join(failed)} out of export.formats, or change what stands in the way)"
+        )
+
+
+def write_one(name: str, mesh: FaceMesh, folder: Path, order: Order) -> None:
+    """Write one format into ``folder/<name>``, whole or not at all.
+
+    Raises
+    ------
+    StageError
+        If the format cannot hold the mesh.
+    """
+    kind = WRITTEN[name]
+    assert kind.write is not None
+    if kind.cells == "tetrahedra" and not mesh.tetrahedral:
+        raise StageError(
+            f"{name} holds tetrahedra only, and the mesh has other cells: take openfoam, vtk or fluent "
+            "in export.formats, or a tetmesh.engine that makes tetrahedra"
+        )
+    place, side = folder / name, folder / f".{name}.partial"
+    shutil.rmtree(side, ignore_errors=True)
+    side.mkdir(parents=True)
+    try:
+        kind.write(mesh, side, order)
+        shutil.rmtree(place, ignore_errors=True)
+        side.rename(place)
+    finally:
+        shutil.rmtree(side, ignore_errors=True)

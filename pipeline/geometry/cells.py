@@ -16,6 +16,13 @@ KINDS = {
     "hexahedron": np.array(
         [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
     ),
+    "pentagonal prism": np.array(
+        [[4, 3, 2, 1, 0], [5, 6, 7, 8, 9], *([k, (k + 1) % 5, 5 + (k + 1) % 5, 5 + k, -1] for k in range(5))]
+    ),
+    "hexagonal prism": np.array(
+        [[5, 4, 3, 2, 1, 0], [6, 7, 8, 9, 10, 11],
+         *([k, (k + 1) % 6, 6 + (k + 1) % 6, 6 + k, -1, -1] for k in range(6))]
+    ),
 }  # fmt: skip
 """Faces of each kind by its local corners, counterclockwise seen from outside, -1 where a face has three."""
 

@@ -91,13 +91,20 @@ class TetMesh:
         )
 
 
+FLAT = ("empty", "wedge")
+
+
 @dataclass(frozen=True, slots=True)
 class Patch:
-    """A named run of boundary faces: ``faces[start:start + count]``."""
+    """A named run of boundary faces: ``faces[start:start + count]``.
+
+    `kind` is one of `FLAT` where OpenFOAM's type says that the mesh has fewer than three dimensions, else ``"patch"``.
+    """
 
     name: str
     start: int
     count: int
+    kind: str = "patch"
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -9,7 +9,7 @@ C and N the centers of its owner and neighbour, d = N - C, V a cell's volume. Ea
 import numpy as np
 
 from pipeline.geometry.polyhedra import Polyhedra, by_size, sum_per_cell
-from pipeline.nouns.arrays import Floats
+from pipeline.nouns.arrays import Bools, Floats
 from pipeline.nouns.mesh import FaceMesh
 
 TINY = 1e-150
@@ -59,9 +59,34 @@ def skewness(mesh: FaceMesh, shape: Polyhedra) -> Floats:
     return size / extent
 
 
+def directions(mesh: FaceMesh, shape: Polyhedra) -> Bools:
+    """Tell in which of x, y and z the mesh has more than one layer of cells, (3,) array.
+
+    A patch of OpenFOAM's kind ``empty`` or ``wedge`` says that it has not: `polyMesh::calcDirections`.
+    """
+    flat = np.zeros(3)
+    for patch in mesh.patches:
+        areas = shape.areas[patch.start : patch.start + patch.count]
+        if patch.kind == "empty":
+            flat += np.abs(areas).sum(axis=0) / max(float(np.abs(areas).sum()), TINY)
+        elif patch.kind == "wedge" and len(areas):
+            # the plane in the middle of two wedges is normal to an axis; a wedge leans by a few degrees from it
+            normal = np.abs(areas.sum(axis=0)) / max(float(np.linalg.norm(areas.sum(axis=0))), TINY)
+            flat += np.maximum(normal, 0.5) - 0.5
+    return flat <= 1e-6
+
+
 def aspect_ratio(mesh: FaceMesh, shape: Polyhedra) -> Floats:
-    """Larger of a_max / a_min and (a_x + a_y + a_z) / (6 V^(2/3)), a = sum of abs(S), (cells,) array [1]."""
+    """Larger of a_max / a_min and (a_x + a_y + a_z) / (6 V^(2/3)), a = sum of abs(S), (cells,) array [1].
+
+    Of a flat mesh, a_max / a_min in its own directions.
+    """
     _, total = _sums_of_areas(mesh, shape)
+    lively = directions(mesh, shape)
+    if not lively.all():
+        own = total[:, lively] if lively.any() else np.ones((mesh.cells, 1))
+        flat: Floats = own.max(axis=1) / (own.min(axis=1) + TINY)
+        return flat
     sides = total.max(axis=1) / (total.min(axis=1) + TINY)
     surface: Floats = total.sum(axis=1) / 6.0 / np.cbrt(np.maximum(shape.volumes, TINY)) ** 2
     ratio: Floats = np.maximum(sides, surface)
@@ -85,8 +110,12 @@ def _sums_of_areas(mesh: FaceMesh, shape: Polyhedra) -> tuple[Floats, Floats]:
 def determinant(mesh: FaceMesh, shape: Polyhedra) -> Floats:
     """Give det(sum(S S) / (mean of |S|)^2) / 8 over a cell's internal faces, (cells,) array [1].
 
-    1 for a cube among cubes; 0 where all internal faces lie in two directions, so that no gradient is known.
+    1 for a cube among cubes; 0 where all internal faces lie in two directions, so that no gradient is known. A flat
+    mesh has 1 in the sum's place for the direction that it lacks, and a mesh along a line has 1.
     """
+    lively = directions(mesh, shape)
+    if lively.sum() < 2:
+        return np.ones(mesh.cells)
     n = mesh.internal
     inner = shape.areas[:n]
     size = _length(inner)
@@ -98,6 +127,8 @@ def determinant(mesh: FaceMesh, shape: Polyhedra) -> Floats:
             sums[:, k] += np.bincount(cell, column, mesh.cells)
     mean = sums[:, 6] / np.maximum(sums[:, 7], 1.0)
     xx, xy, xz, yy, yz, zz = sums[:, :6].T / (mean**2 + TINY)
+    if not lively.all():
+        (xx, yy, zz)[int(np.flatnonzero(~lively)[0])][sums[:, 7] > 0] = 1.0
     result: Floats = np.abs(xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)) / 8.0
     return result
 

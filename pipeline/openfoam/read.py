@@ -10,11 +10,14 @@ import numpy.typing as npt
 
 from pipeline.errors import StageError
 from pipeline.nouns.arrays import Ints
-from pipeline.nouns.mesh import FaceMesh, Patch
+from pipeline.nouns.mesh import FLAT, FaceMesh, Patch
+from pipeline.openfoam.dictionary import COMMENT, Words, read_named
 
-_COMMENT = re.compile(rb"/\*.*?\*/|//[^\n]*", re.DOTALL)
 _HEADER = re.compile(rb"FoamFile\s*\{(?P<body>.*?)\}\s*", re.DOTALL)
 _COUNT = re.compile(rb"\s*(?P<count>\d{1,10})\s*")
+_UNIFORM = re.compile(rb"\s*\{(?P<value>[^{}]*)\}")
+_TIME = re.compile(r"\d+(\.\d*)?(e[+-]?\d+)?", re.IGNORECASE)
+_MOST_UNIFORM = 100_000_000
 LARGEST_FILE = 20_000_000_000
 """A file of more bytes is refused before it is opened: its mesh would not fit into memory."""
 
@@ -24,8 +27,27 @@ FILES = ("points", "faces", "owner", "neighbour", "boundary")
 
 
 def mesh_folder(case: Path) -> Path:
-    """Give the folder of a mesh's files: the case's `polyMesh`, or the folder itself if it is one."""
-    return case if (case / "points").is_file() else case / "constant" / "polyMesh"
+    """Give the folder of a mesh's faces: the case's latest `polyMesh`, or the folder itself if it is one."""
+    return case if (case / "points").is_file() else _instance(case, "faces")
+
+
+def mesh_files(case: Path) -> list[Path]:
+    """Give the files that `read_openfoam` reads: each from the latest time that has it, as OpenFOAM takes it.
+
+    A mesh that moves has new points only, one that snappyHexMesh refined has all files in a later time.
+    """
+    faces = mesh_folder(case)
+    points = faces if faces == case else _instance(case, "points")
+    return [(points if name == "points" else faces) / name for name in FILES]
+
+
+def _instance(case: Path, name: str) -> Path:
+    times = []
+    for folder in case.iterdir() if case.is_dir() else ():
+        if _TIME.fullmatch(folder.name) and any((folder / "polyMesh" / each).exists() for each in (name, f"{name}.gz")):
+            times.append(folder)
+    latest = max(times, key=lambda folder: float(folder.name), default=case / "constant")
+    return latest / "polyMesh"
 
 
 def read_openfoam(case: Path) -> FaceMesh:
@@ -34,7 +56,7 @@ def read_openfoam(case: Path) -> FaceMesh:
     Parameters
     ----------
     case : Path
-        A case folder, or its `polyMesh` folder.
+        A case folder, of whose times the latest with a mesh counts, or a `polyMesh` folder.
 
     Returns
     -------
@@ -43,15 +65,18 @@ def read_openfoam(case: Path) -> FaceMesh:
     Raises
     ------
     StageError
-        If there is no mesh, or a file is damaged or of a kind that is not read (compressed, 64-bit labels are).
+        If there is no mesh, or a file is damaged or compressed.
     """
     folder = mesh_folder(case)
     try:
-        points = _List(folder / "points").floats(3)
-        corners, offsets = _read_faces(_List(folder / "faces"))
-        owner = _List(folder / "owner").labels()
-        neighbour = _List(folder / "neighbour").labels()
-        patches = _read_boundary(_contents(folder / "boundary"))
+        files = dict(zip(FILES, mesh_files(case), strict=True))
+        if not files["faces"].parent.is_dir() and (case / "processor0").is_dir():
+            raise ValueError("it is decomposed; run reconstructParMesh -constant, or give one processor's folder")
+        points = _List(files["points"]).floats(3)
+        corners, offsets = _read_faces(_List(files["faces"]))
+        owner = _List(files["owner"]).labels()
+        neighbour = _List(files["neighbour"]).labels()
+        patches = _read_boundary(_contents(files["boundary"]))
         # older tools pad the neighbours of boundary faces with -1
         neighbour = neighbour[neighbour >= 0]
         cells = int(max(owner.max(initial=-1), neighbour.max(initial=-1))) + 1
@@ -88,7 +113,7 @@ class _List:
             raise ValueError(f"{path.name} was written on a big-endian machine")
         self.rest = content[banner.end() :]
         if not self.binary:
-            self.rest = _COMMENT.sub(b" ", self.rest)
+            self.rest = COMMENT.sub(b" ", self.rest)
         else:
             self.rest = re.sub(rb"\A(\s*//[^\n]*\n)*", b"", self.rest)
 
@@ -110,6 +135,21 @@ class _List:
                 raise ValueError(f"{self.name} ends before its {count} entries do")
             values = np.frombuffer(self.rest, raw, count * components, 1)
             self.rest = self.rest[size + 2 :]
+        elif uniform := _UNIFORM.match(self.rest):
+            # a list of equal values; a mesh of so many cells would not fit into memory
+            if count > _MOST_UNIFORM:
+                raise ValueError(f"{self.name} says {count} equal entries")
+            self.rest = self.rest[uniform.end() :]
+            values = np.tile(
+                _numbers(
+                    uniform["value"].translate(None, b"()")
+                    if components == 1
+                    else uniform["value"].replace(b"(", b" ").replace(b")", b" "),
+                    parsed,
+                    self.name,
+                ),
+                count,
+            )
         else:
             text = (
                 self.rest.translate(None, b"()")
@@ -163,12 +203,14 @@ def _read_faces(file: _List) -> tuple[Ints, Ints]:
 
 
 def _read_boundary(content: bytes) -> tuple[Patch, ...]:
-    text = _COMMENT.sub(b" ", content).decode("latin-1")
-    body = text[text.index("(") :] if "(" in text else ""
     patches = []
-    for match in re.finditer(r"([^\s(){};]+)\s*\{([^{}]*)\}", body):
-        count, start = (re.search(rf"{key}\s+(\d+)\s*;", match[2]) for key in ("nFaces", "startFace"))
-        if count is None or start is None:
-            raise ValueError(f"patch {match[1]} in boundary has no nFaces or startFace")
-        patches.append(Patch(match[1], int(start[1]), int(count[1])))
+    for name, entries in read_named(content):
+        if isinstance(entries, Words):
+            raise ValueError(f"{name} in boundary is no patch")
+        found = {key: words[0] for key, words in entries if isinstance(words, Words) and words}
+        count, start = found.get("nFaces", ""), found.get("startFace", "")
+        if not (count.isdigit() and start.isdigit()):
+            raise ValueError(f"patch {name} in boundary has no nFaces or startFace")
+        kind = found.get("type", "")
+        patches.append(Patch(name, int(start), int(count), kind if kind in FLAT else "patch"))
     return tuple(patches)

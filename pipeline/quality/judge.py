@@ -74,7 +74,7 @@ def judge(mesh: FaceMesh, settings: QualitySettings | None = None, progress: Pro
     settings = settings or QualitySettings()
     shape = mesh.polyhedra()
     found: dict[str, Metric] = {}
-    reasons = _topology(mesh)
+    reasons, notes = _topology(mesh)
     warnings: list[str] = []
     for done, (name, definition) in enumerate(_DEFINITIONS.items()):
         progress(f"quality: {name}", done / len(_DEFINITIONS))
@@ -97,6 +97,7 @@ def judge(mesh: FaceMesh, settings: QualitySettings | None = None, progress: Pro
         metrics=found,
         verdict=verdict,
         reasons=(*reasons, *warnings),
+        notes=tuple(notes),
     )
 
 
@@ -182,8 +183,8 @@ def _sentence(metric: Metric) -> str:
     )
 
 
-def _topology(mesh: FaceMesh) -> list[str]:
-    """Tell what no metric sees: parts that do not touch, points without faces, patches without any."""
+def _topology(mesh: FaceMesh) -> tuple[list[str], list[str]]:
+    """Tell what no metric sees: points without faces; and what `checkMesh` notes and lets pass."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -191,14 +192,14 @@ def _topology(mesh: FaceMesh) -> list[str]:
         (np.ones(mesh.internal, np.int8), (mesh.owner[: mesh.internal], mesh.neighbour)), shape=(mesh.cells,) * 2
     )
     parts, part = connected_components(links, directed=False)
-    troubles = []
+    troubles, notes = [], []
     if parts > 1:
         smallest = int(np.bincount(part).min())
-        troubles.append(f"{parts} parts of the mesh share no face, the smallest has {smallest} cells")
+        notes.append(f"{parts} parts of the mesh share no face, the smallest has {smallest} cells")
     unused = len(mesh.points) - len(np.unique(mesh.corners))
     if unused:
         troubles.append(f"{unused} points belong to no face")
     empty = [patch.name for patch in mesh.patches if not patch.count]
     if empty:
-        troubles.append(f"no face in patch {', '.join(empty)}")
-    return troubles
+        notes.append(f"no face in patch {', '.join(empty)}")
+    return troubles, notes

@@ -61,7 +61,7 @@ def bad_mesh() -> FaceMesh:
 
 @pytest.mark.parametrize("kind", ["openfoam", "vtk", "fluent", "gmsh", "su2"])
 def test_a_good_mesh_of_any_format_passes_with_exit_code_0(fibertwin: Fibertwin, kind: str, tmp_path: Path) -> None:
-    export(good_mesh(), tmp_path, ExportSettings(formats=(kind,)), AIR, "symmetry")  # type: ignore[arg-type]
+    export(good_mesh(), tmp_path, ExportSettings(formats=(kind,)), AIR, "symmetry")
     place = tmp_path / kind
     if kind != "openfoam":
         place = next(path for path in sorted(place.iterdir()) if path.suffix in (".vtu", ".msh", ".su2"))

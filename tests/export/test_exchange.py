@@ -73,7 +73,7 @@ def test_openfoam_reads_gmsh_with_the_patches_names(mesh: FaceMesh, written: Pat
 
 @pytest.mark.parametrize(
     ("name", "reason"),
-    [("stl", "surface, not a volume"), ("xdmf", "lose the patches"), ("med", "HDF5"), ("openfaom", "openfoam")],
+    [("off", "surface, not a volume"), ("xdmf", "lose the patches"), ("med", "HDF5"), ("openfaom", "openfoam")],
 )
 def test_a_format_that_cannot_keep_the_patches_is_refused(name: str, reason: str) -> None:
     with pytest.raises(ValidationError, match=reason):

@@ -8,11 +8,21 @@ from pipeline.geometry.polyhedra import polyhedra
 from pipeline.geometry.triangles import Floats
 
 UNIT = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1.0]])
+
+
+def _prism(sides: int) -> Floats:
+    """Corners of a prism of height 1 on a regular polygon in the unit circle, of area n / 2 sin(2 pi / n)."""
+    angle = 2 * np.pi * np.arange(sides) / sides
+    return np.array([[np.cos(a), np.sin(a), z] for z in (0.0, 1.0) for a in angle])
+
+
 SHAPES: dict[str, tuple[Floats, float]] = {
     "tetra": (UNIT[[0, 1, 3, 4]], 1 / 6),
     "pyramid": (UNIT[:5], 1 / 3),
     "wedge": (UNIT[[0, 1, 3, 4, 5, 7]], 1 / 2),
     "hexahedron": (UNIT, 1.0),
+    "pentagonal prism": (_prism(5), 5 / 2 * np.sin(2 * np.pi / 5)),
+    "hexagonal prism": (_prism(6), 6 / 2 * np.sin(2 * np.pi / 6)),
 }
 
 

@@ -131,7 +131,7 @@ def test_a_folded_cell_of_a_micrometer_does_not_slip_through() -> None:
     assert report.metrics["face_pyramid"].over_limit > 0
 
 
-def test_parts_that_do_not_touch_and_unused_points_are_told() -> None:
+def test_parts_that_do_not_touch_are_noted_and_unused_points_fail() -> None:
     one = bricks([1.0, 1.0])
     n = len(one.points)
     points = np.concatenate([one.points, one.points + 10.0, [[5.0, 5.0, 5.0]]])
@@ -146,9 +146,11 @@ def test_parts_that_do_not_touch_and_unused_points_are_told() -> None:
     faces = len(owner)
     patches = (Patch("walls", 2, faces - 2),)
     mesh = FaceMesh(points, corners, np.arange(0, 4 * faces + 1, 4), owner, np.array([1, 3]), 4, patches)
-    reasons = " ".join(judge(mesh).reasons)
-    assert "2 parts of the mesh share no face, the smallest has 2 cells" in reasons
-    assert "1 points belong to no face" in reasons
+    report = judge(mesh)
+    # checkMesh says "Mesh OK" of bodies that do not touch, and fails on points without faces
+    assert report.notes == ("2 parts of the mesh share no face, the smallest has 2 cells",)
+    assert "1 points belong to no face" in " ".join(report.reasons)
+    assert report.verdict == "fail"
 
 
 def test_metrics_do_not_depend_on_the_unit_of_length() -> None:

@@ -10,6 +10,8 @@ from itertools import pairwise
 from pathlib import Path
 
 from pipeline.errors import StageError
+from pipeline.export.formats.format import Format
+from pipeline.export.formats.read_fluent import read_fluent
 from pipeline.nouns.mesh import FaceMesh, Patch
 from pipeline.nouns.patches import DUCT
 from pipeline.progress import Progress, silent
@@ -98,3 +100,12 @@ def _format_faces(mesh: FaceMesh, patch: Patch) -> Iterator[str]:
         for k, (first, last) in enumerate(pairwise(ends)):
             numbers = [last - first, *reversed(corners[first:last]), own[k], other[k]]
             yield " ".join(f"{number:x}" for number in numbers) + "\n"
+
+
+FORMAT = Format(
+    "fluent",
+    (".msh", ".cas"),
+    write=lambda mesh, folder, order: write_fluent(mesh, folder / "mesh.msh", order.sides, order.progress),
+    read=read_fluent,
+    recognizes=lambda head: head.lstrip()[:1] == b"(",
+)

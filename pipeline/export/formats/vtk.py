@@ -10,6 +10,8 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 import numpy.typing as npt
 
+from pipeline.export.formats.format import Format
+from pipeline.export.formats.read_vtk import read_vtk
 from pipeline.geometry.faces import compacted
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.mesh import FaceMesh, Patch
@@ -153,3 +155,11 @@ def format_vtm(patches: tuple[Patch, ...]) -> str:
         f'    <Block index="1" name="boundary">\n{blocks}    </Block>\n'
         "  </vtkMultiBlockDataSet>\n</VTKFile>\n"
     )
+
+
+FORMAT = Format(
+    "vtk",
+    (".vtu", ".vtk", ".vti", ".vts", ".vtr"),
+    write=lambda mesh, folder, order: write_vtk(mesh, folder, order.fields, order.progress),
+    read=read_vtk,
+)
