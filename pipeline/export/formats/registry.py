@@ -4,8 +4,9 @@
 
 from pathlib import Path
 
-from pipeline.export.formats import abaqus, fluent, gmsh, medit, nastran, openfoam, su2, vtk
+from pipeline.export.formats import abaqus, fluent, gmsh, medit, nastran, su2, vtk
 from pipeline.export.formats.format import Format
+from pipeline.export.formats.openfoam import format as openfoam
 from pipeline.export.formats.unavailable import UNAVAILABLE
 
 FORMATS: tuple[Format, ...] = (

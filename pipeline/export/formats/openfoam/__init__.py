@@ -1,18 +1,3 @@
-"""A complete case of OpenFOAM: the mesh, the fields at the start, the solver's dictionaries, and scripts."""
+"""OpenFOAM: the mesh, the complete case around it, and the way back."""
 
 # SPDX-License-Identifier: GPL-3.0-or-later
-
-from pathlib import Path
-
-from pipeline.export.formats.format import Format, Order
-from pipeline.nouns.mesh import FaceMesh
-
-
-def _write(mesh: FaceMesh, folder: Path, order: Order) -> None:
-    from pipeline.export.formats.openfoam.case import write_openfoam
-
-    write_openfoam(mesh, folder, order.flow, order.sides, order.settings, order.progress, order.slip)
-
-
-# a case is a folder: `pipeline.export.read` finds it by its mesh, not by a suffix
-FORMAT = Format("openfoam", write=_write)
