@@ -36,6 +36,7 @@ check: setup  ## Style, types, imports, and the examples in the documentation
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/deptry pipeline
 	$(BIN)/pytest --doctest-modules pipeline docs README.md
 
 bench: setup  ## Measure what the documentation quotes: writing, engines side by side, time to a drag (half an hour)
