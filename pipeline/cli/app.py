@@ -6,7 +6,7 @@ import importlib.metadata
 import json
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from cyclopts import App, CycloptsError, Parameter
 from rich.console import Console
@@ -112,22 +112,28 @@ def quality(
     limits: Path | None = None,
     report: Path | None = None,
     scene: Path | None = None,
+    fail_on: Literal["warn", "fail"] = "warn",
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
     quiet: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
-    """Judge any mesh by OpenFOAM's definitions, whoever made it; exit code 1 if a limit does not hold.
+    """Judge any mesh by OpenFOAM's definitions, whoever made it.
+
+    The exit code is 0 where every limit holds, 3 where what does not hold costs accuracy only, 4 where the mesh is not
+    fit for a solver, 1 where it cannot be read, 2 where the command line is wrong.
 
     Parameters
     ----------
     mesh
-        An OpenFOAM case's folder, a mesh file (Fluent's .msh and .cas in text, .vtu, .vtk, gmsh's .msh, .inp, .bdf,
-        .su2, .mesh and what else meshio reads), or the folder of a run.
+        An OpenFOAM case's folder, a mesh file (Fluent's .msh and .cas in text, .vtu, .vtk, .vti, .vts, .vtr, gmsh's
+        .msh, .inp, .bdf, .su2, .mesh), or the folder of a run.
     limits
         A case file whose limits (``[quality]``) are held against the mesh, instead of those of checkMesh.
     report
         Write a page of the mesh into this file (.html): verdict, table, histograms, pictures, worst cells, provenance.
     scene
         Write the mesh into this file (.html) to turn it in a browser, offline too.
+    fail_on
+        With ``fail``, a verdict of ``warn`` ends with 0 as well.
     as_json
         Print JSON with SI numbers, with the worst cells and where they are, instead of a table.
     quiet
@@ -135,7 +141,7 @@ def quality(
     """
     from pipeline.cli.judging import judge_mesh
 
-    raise SystemExit(judge_mesh(mesh, found(limits) if limits else None, report, scene, as_json, quiet))
+    raise SystemExit(judge_mesh(mesh, found(limits) if limits else None, report, scene, as_json, quiet, fail_on))
 
 
 @app.command

@@ -6,6 +6,7 @@ import dataclasses
 import json
 import sys
 from pathlib import Path
+from typing import Literal
 
 from rich.console import Console
 
@@ -23,8 +24,8 @@ from pipeline.quality.judge import judge
 from pipeline.quality.settings import QualitySettings
 from pipeline.quality.table import terminal_table
 
-FELL_SHORT = 1
-"""Exit code where a limit does not hold."""
+EXIT_CODES = {"pass": 0, "warn": 3, "fail": 4}
+"""Exit code of each verdict; a file that cannot be read ends with 1, a command line that asks for nonsense with 2."""
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -37,9 +38,15 @@ class _Source:
 
 
 def judge_mesh(
-    path: Path, limits: Path | None, page: Path | None, scene: Path | None, as_json: bool, quiet: bool
+    path: Path,
+    limits: Path | None,
+    page: Path | None,
+    scene: Path | None,
+    as_json: bool,
+    quiet: bool,
+    fail_on: Literal["warn", "fail"] = "warn",
 ) -> int:
-    """Print what a mesh is like and give the exit code: 0 where every limit holds."""
+    """Print what a mesh is like and give the exit code: 0 where the verdict is better than what one fails on."""
     settings = read_case(limits).quality if limits else None
     with listening(Console(stderr=True), quiet or as_json) as tell:
         tell(f"reading {path}")
@@ -56,7 +63,7 @@ def judge_mesh(
         for what, file in (("read it:", page), ("turn it:", scene)):
             if file is not None:
                 Console().print(what, file, markup=False, highlight=False, soft_wrap=True)
-    return 0 if report.passed else FELL_SHORT
+    return 0 if report.verdict == "warn" and fail_on == "fail" else EXIT_CODES[report.verdict]
 
 
 def _source(path: Path) -> _Source:

@@ -51,9 +51,9 @@ class QualityReport:
 
     `verdict` is ``"pass"`` where every limit holds; ``"warn"`` where what does not hold costs accuracy but stops no
     solver (non-orthogonality below 90 degrees, and what only ``checkMesh -allGeometry`` looks at: determinant, face
-    weight, volume ratio); ``"fail"`` where plain `checkMesh` fails too. `reasons` has a sentence for each limit that
-    does not hold, `notes` one for what stops no solver but may not be meant: parts that do not touch, patches without a
-    face. `patches` counts faces, `volume` is in m3.
+    weight, volume ratio, concave cells, tetrahedra at faces); ``"fail"`` where plain `checkMesh` fails too. `reasons`
+    has a sentence for each limit that does not hold, `notes` one for what stops no solver but may not be meant: parts
+    that do not touch, patches without a face. `patches` counts faces, `volume` is in m3.
     """
 
     cells: int

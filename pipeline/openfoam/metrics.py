@@ -169,3 +169,33 @@ def face_pyramid(mesh: FaceMesh, shape: Polyhedra) -> Floats:
     other = _dot(shape.areas[:n], shape.cell_centers[mesh.neighbour] - shape.centers[:n])
     share[:n] = np.minimum(share[:n], other / (3.0 * (np.abs(shape.volumes[mesh.neighbour]) + TINY)))
     return share
+
+
+def concavity(mesh: FaceMesh, shape: Polyhedra) -> Floats:
+    """Largest cosine between a face's normal and the way from its center to another face's, (cells,) array [1].
+
+    Above 0 the cell is concave there, 0 is a side that is cut in two; `checkMesh -allGeometry` calls concave what is
+    above -1e-6.
+    """
+    from pipeline.openfoam.decomposition import largest_cosines
+
+    cell = np.concatenate([mesh.owner, mesh.neighbour])
+    face = np.concatenate([np.arange(mesh.faces), np.arange(mesh.internal)])
+    sign = np.where(np.arange(len(cell)) < mesh.faces, 1.0, -1.0)
+    order = np.argsort(cell, kind="stable")
+    first = np.concatenate([[0], np.cumsum(np.bincount(cell, minlength=mesh.cells))])
+    return largest_cosines(first, face[order], sign[order], shape.areas, shape.centers)
+
+
+def face_tets(mesh: FaceMesh, shape: Polyhedra) -> Floats:
+    """Smallest of the tetrahedra that OpenFOAM cuts the cells into at a face, over the cell, (faces,) array [1].
+
+    Particles are tracked and fields interpolated through these; not above 0 one is turned inside out or flat
+    (`polyMeshTetDecomposition::checkFaceTets`).
+    """
+    from pipeline.openfoam.decomposition import smallest_tets
+
+    return smallest_tets(
+        mesh.points, mesh.corners, mesh.offsets, mesh.owner, mesh.neighbour, shape.centers, shape.cell_centers,
+        shape.volumes,
+    )  # fmt: skip

@@ -53,6 +53,12 @@ _DEFINITIONS = {
         definitions.face_pyramid, "faces", "smallest", "1", 0.0, "OpenFOAM's face pyramids, relative to the cell"
     ),
     "openness": _Definition(definitions.openness, "cells", "largest", "1", 1e-6),
+    "concavity": _Definition(
+        definitions.concavity, "cells", "largest", "1", -1e-6, "OpenFOAM checkMesh -allGeometry", mild=True
+    ),
+    "face_tets": _Definition(
+        definitions.face_tets, "faces", "smallest", "1", 0.0, "OpenFOAM checkMesh -allGeometry", mild=True
+    ),
 }  # fmt: skip
 
 

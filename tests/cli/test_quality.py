@@ -2,6 +2,7 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import dataclasses
 import itertools
 import json
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from pipeline.cli.judging import EXIT_CODES
 from pipeline.export.formats.openfoam.case import write_openfoam
 from pipeline.export.settings import ExportSettings
 from pipeline.export.write import export
@@ -72,11 +74,23 @@ def test_a_good_mesh_of_any_format_passes_with_exit_code_0(fibertwin: Fibertwin,
     assert said.code == 0
 
 
-def test_limits_that_fall_short_are_exit_code_1_with_their_reasons(fibertwin: Fibertwin, tmp_path: Path) -> None:
+def test_limits_that_fall_short_have_their_own_exit_codes_and_reasons(fibertwin: Fibertwin, tmp_path: Path) -> None:
     write_openfoam(bad_mesh(), tmp_path, AIR)
     said = fibertwin("quality", tmp_path)
-    assert said.code == 1
+    assert said.code == EXIT_CODES["warn"] == 3
     assert "\n- " in said.out
+    assert fibertwin("quality", tmp_path, "--fail-on", "fail", "--quiet").code == 0
+
+
+def test_what_no_solver_takes_is_exit_code_4_whatever_one_fails_on(fibertwin: Fibertwin, tmp_path: Path) -> None:
+    mesh = good_mesh()
+    # one inner point pulled through its cells
+    points = mesh.points.copy()
+    inner = np.setdiff1d(np.arange(len(points)), mesh.corners[mesh.offsets[mesh.internal] :])
+    points[inner[0]] += 5e-6
+    write_openfoam(dataclasses.replace(mesh, points=points), tmp_path, AIR)
+    for severity in ("warn", "fail"):
+        assert fibertwin("quality", tmp_path, "--fail-on", severity).code == EXIT_CODES["fail"] == 4
 
 
 def test_json_names_the_worst_cells_and_where_they_are(fibertwin: Fibertwin, tmp_path: Path) -> None:
@@ -94,7 +108,7 @@ def test_json_names_the_worst_cells_and_where_they_are(fibertwin: Fibertwin, tmp
 def test_quiet_leaves_the_exit_code_to_tell(fibertwin: Fibertwin, tmp_path: Path) -> None:
     write_openfoam(bad_mesh(), tmp_path, AIR)
     said = fibertwin("quality", tmp_path, "--quiet")
-    assert (said.code, said.out, said.err) == (1, "", "")
+    assert (said.code, said.out, said.err) == (3, "", "")
 
 
 def test_limits_come_from_a_case_file(fibertwin: Fibertwin, tmp_path: Path) -> None:
@@ -105,7 +119,7 @@ def test_limits_come_from_a_case_file(fibertwin: Fibertwin, tmp_path: Path) -> N
     # the triangles on the sides have a skewness of a quarter
     assert fibertwin("quality", tmp_path / "mesh").code == 0
     said = fibertwin("quality", tmp_path / "mesh", "--limits", strict)
-    assert said.code == 1
+    assert said.code == 4
     assert "< 0.2" in said.out
 
 
@@ -129,7 +143,9 @@ def test_hexahedra_and_hanging_nodes_and_duals_of_openfoams_meshers(fibertwin: F
     assert said.code == 0
     foam(tmp_path, "snappyHexMesh", "-overwrite")
     said = fibertwin("quality", tmp_path)
-    assert said.code == 0
+    # a side that is cut in two beside smaller cells is concave to checkMesh -allGeometry, and to no solver
+    assert said.code == 3
+    assert [line.split(":")[0] for line in said.out.splitlines() if line.startswith("- ")] == ["- concavity"]
     assert "1,024 cells" not in said.out
 
 

@@ -69,6 +69,10 @@ def assert_as_checkmesh_says(case: Path, mesh: FaceMesh, *, cells_of_kind: str) 
         int(text.split("severely non-orthogonal (> 70 degrees) faces:")[1].split(".")[0]) if "severely" in text else 0
     )
     assert report.metrics["non_orthogonality"].over_limit == above
+    # what only -allGeometry looks at: the sets that it writes hold each cell or face once
+    for metric, words in (("concavity", "concave cells"), ("face_tets", "faces with low quality")):
+        written = re.search(rf"<<Writing (\d+) {words}", text)
+        assert report.metrics[metric].over_limit == (int(written[1]) if written else 0), metric
     kinds = dict(re.findall(r"^    (hexahedra|prisms|pyramids|tetrahedra|polyhedra): +(\d+)$", text, re.MULTILINE))
     assert len(kinds) == 5
     assert cells_by_kind(mesh) == {kind: int(count) for kind, count in kinds.items() if int(count)}

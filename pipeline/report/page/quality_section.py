@@ -78,6 +78,7 @@ def quality_section(report: QualityReport, mesh: FaceMesh | None, view: str) -> 
     parts: tuple[Part, ...] = (
         Text(f"{summary(report)}."),
         *(Text(reason, mark) for reason in report.reasons),
+        *(Text(f"Note: {note}.", "soft") for note in report.notes),
         Table("", HEADER, tuple(rows(report))),
         Charts(tuple(drawn)),
         Text(
