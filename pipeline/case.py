@@ -27,6 +27,18 @@ LARGEST_INTEGER = 2**63 - 1
 # a name of more parts than tables may nest; a part starts where no name goes on, or the search takes a square too
 _PART = r"(?:[A-Za-z0-9_-]++|\"[^\"\n]*+\"|'[^'\n]*+')"
 _LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{DEEPEST},}}")
+_SYNONYMS = {
+    "gsd": "geometric_std",
+    "sigma_g": "geometric_std",
+    "sigma": "std",
+    "velocity": "face_velocity",
+    "u0": "face_velocity",
+    "packing_density": "solidity",
+    "alpha": "solidity",
+    "slope": "relaxation_slope",
+    "d": "fiber_diameter",
+}
+"""What else the field calls a key."""
 _MOST_MISTAKES, _LONGEST_LINE = 20, 400
 
 _Settings = TypeVar("_Settings", bound=BaseModel)
@@ -228,7 +240,10 @@ def _line(error: Any, content: dict[str, Any]) -> str:
             if moved:
                 places = " or ".join(".".join([*keys[:-1], table, keys[-1]]) for table in moved)
                 return f"{place}: no key of [{'.'.join(keys[:-1])}]; write {places}"
-            near = difflib.get_close_matches(keys[-1], _known(keys[:-1]), n=1)
+            known = _known(keys[:-1])
+            # what the field calls a key comes before what merely looks like it
+            near = [name for name in (_SYNONYMS.get(keys[-1].lower()),) if name in known]
+            near = near or difflib.get_close_matches(keys[-1], known, n=1)
             advice = f"did you mean {near[0]}?" if near else f"known: {', '.join(_known(keys[:-1])) or 'none'}"
             return f"{place}: unknown key; {advice}"
         case "missing":

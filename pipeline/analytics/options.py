@@ -44,6 +44,7 @@ def read_options(
     >>> medium.thickness, flow.preset
     (0.001, 'hinds')
     """
+    _ask_for_percent(given.get("solidity"))
     known = medium.model_dump() if medium else {}
     of_medium = {name: f"{value!r} {_UNITS[name]}".strip() for name, value in known.items()}
     of_medium |= {name: text for name, text in given.items() if name in _UNITS}
@@ -68,6 +69,16 @@ def read_options(
             # each value is fine, together they are not
             raise CaseError("\n".join(_lines(problem))) from None
     return read_medium, read_flow
+
+
+def _ask_for_percent(text: str | None) -> None:
+    """Refuse a solidity that can only be a percentage, and say how it is written."""
+    try:
+        value = float(text or "")
+    except ValueError:
+        return
+    if 1.0 < value < 100.0:
+        raise CaseError(f'--solidity {text}: no medium is more than solid; was {text} % meant? Write "{text} %"')
 
 
 def _lines(problem: ValidationError) -> list[str]:

@@ -66,8 +66,8 @@ def run(
     dry_run
         Do nothing; tell what would run and why, with an estimate of cells, memory and processor time.
     as_json
-        Print JSON instead of tables: of each stage its folder, what became of it and why, its seconds and its counts
-        in SI.
+        Print JSON instead of tables: of each stage its folder, what became of it and why, its seconds, and its counts
+        in SI units.
     quiet
         Print nothing but errors.
     """
@@ -171,7 +171,8 @@ def predict(
     thickness
         Thickness of the mat: ``47 um``.
     fiber_diameter
-        Diameter of the fibers: ``1.4 um``.
+        Diameter of the fibers: ``1.4 um``; or a distribution as a case file has it, from which that of equal fibers
+        of the same length and volume is taken: ``{distribution="lognormal", median="1.2 um", geometric_std=1.5}``.
     face_velocity
         Flow rate over the face's area: ``2.5 cm/s``.
     particle_diameter
@@ -376,7 +377,8 @@ def doctor() -> None:
     from pipeline.cli.tables import findings_table
 
     findings = examine()
-    out.print(findings_table(findings))
+    # a console of its own: as wide as the terminal is now
+    Console().print(findings_table(findings))
     if not all(finding.fine for finding in findings if finding.needed):
         raise SystemExit(1)
 

@@ -20,6 +20,7 @@ from pipeline.line.store import disk_trouble_explained
 
 def predict_filter(source: Path | None, given: Mapping[str, str], as_json: bool, plot: Path | None) -> None:
     """Print what the models say, and draw it where a plot is asked for."""
+    given = _with_one_diameter(given)
     medium, flow = read_options(given, *_known(source)) if source else read_options(given)
     if plot is not None:
         # matplotlib takes a second to load, for nobody who wants numbers only
@@ -34,6 +35,25 @@ def predict_filter(source: Path | None, given: Mapping[str, str], as_json: bool,
     out = Console()
     for table in prediction_tables(prediction):
         out.print(plain_table(table.title, table.columns, table.rows))
+
+
+_DRAWN = 200_000  # diameters that stand for a distribution: their mean square is good to a few thousandths
+
+
+def _with_one_diameter(given: Mapping[str, str]) -> Mapping[str, str]:
+    """Turn a distribution of diameters into that of equal fibers of the same length and volume."""
+    text = given.get("fiber_diameter", "").strip()
+    if not text.startswith("{"):
+        return given
+    import numpy as np
+
+    from pipeline.case import override, validate
+    from pipeline.mat.diameters import draw_diameters
+
+    mat = {"generator": "layered", "side": "100 um", "relaxation_slope": 0.15, "stop": {"count": 1}}
+    case = validate(override({"mat": mat}, (f"mat.fiber_diameter={text}",)), "--fiber-diameter")
+    drawn = draw_diameters(case.mat.fiber_diameter, _DRAWN, np.random.default_rng(0))
+    return {**given, "fiber_diameter": f"{float(np.sqrt(np.mean(drawn**2)))!r} m"}
 
 
 def _known(source: Path) -> tuple[FilterSettings, FlowSettings]:

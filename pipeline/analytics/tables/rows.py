@@ -2,11 +2,18 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import math
+
+from pipeline.analytics.formulas.classes import en_1822_class, iso_29463_class
+from pipeline.analytics.formulas.merit import HEPA_EFFICIENCY, HEPA_PRESSURE_DROP
 from pipeline.analytics.models.comparison import REFERENCE
 from pipeline.analytics.models.prediction import Prediction
 from pipeline.analytics.models.pressure_models import MODELS
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.section import Table
+
+_TOLD_BY_PENETRATION = 0.99
+_LEAST_PENETRATION = 1e-6  # percent; below, digits of the efficiency are nines only
 
 
 def length(value: float) -> str:
@@ -23,13 +30,35 @@ def length(value: float) -> str:
     return f"{value / 1e-9:.4g} nm"
 
 
-def _share(value: float) -> str:
-    # a HEPA filter's efficiency is told by its nines
-    return f"{value:.2%}" if value < 0.99 else f"{value:.5%}"
+def share(value: float) -> str:
+    """Write an efficiency as people in filtration do: from 99 % on by what it lets through.
+
+    Examples
+    --------
+    >>> share(0.4534), share(0.99975), share(1.0 - 3.2e-9)
+    ('45.34%', '99.975% (penetration 0.025%)', 'penetration 3.2e-07%')
+    """
+    passing = 100.0 * (1.0 - value)
+    if value < _TOLD_BY_PENETRATION:
+        return f"{value:.2%}"
+    if passing < _LEAST_PENETRATION:
+        return f"penetration {passing:.2g}%" if passing > 0.0 else "100%"
+    digits = max(0, 1 - math.floor(math.log10(passing)))
+    return f"{100.0 * value:.{digits}f}% (penetration {passing:.3g}%)"
 
 
-def _pascal(value: float | None) -> str:
-    return "no answer" if value is None or value == float("inf") else f"{value:.4g}"
+def pascal(value: float | None) -> str:
+    """Write a pressure drop with four digits, whatever its size.
+
+    Examples
+    --------
+    >>> pascal(22.0), pascal(20.936), pascal(10514.7), pascal(None)
+    ('22.00', '20.94', '10,510', 'no answer')
+    """
+    if value is None or not math.isfinite(value):
+        return "no answer"
+    digits = 3 - math.floor(math.log10(value)) if value > 0.0 else 0
+    return f"{round(value, digits):,.{max(0, digits)}f}"
 
 
 def prediction_tables(prediction: Prediction) -> tuple[Table, ...]:
@@ -45,7 +74,7 @@ def prediction_tables(prediction: Prediction) -> tuple[Table, ...]:
     """
     p = prediction
     medium = (
-        ("solidity", _share(p.solidity)),
+        ("solidity", f"{p.solidity:.2%}"),
         ("thickness", length(p.thickness)),
         ("fiber diameter", length(p.fiber_diameter)),
         ("face velocity", f"{p.face_velocity * 100:.4g} cm/s"),
@@ -55,27 +84,24 @@ def prediction_tables(prediction: Prediction) -> tuple[Table, ...]:
         ("fiber Reynolds number", f"{p.reynolds:.4g}"),
     )
     drops = tuple(
-        (MODELS[name].title, MODELS[name].structure, _pascal(value), "; ".join(p.notes[name]))
+        (MODELS[name].title, MODELS[name].structure, pascal(value), "; ".join(p.notes[name]))
         for name, value in p.pressure_drop.items()
     )
     mechanisms = tuple(
-        (name.replace("_", " "), f"{p.single_fiber[name]:.4g}", _share(p.efficiency[name])) for name in p.efficiency
+        (name.replace("_", " "), f"{p.single_fiber[name]:.4g}", share(p.efficiency[name])) for name in p.efficiency
     )
     merit = {name: "no answer" if value is None else f"{value:.4g} 1/Pa" for name, value in p.figure_of_merit.items()}
-    verdict = "passes" if p.hepa["passes"] else "fails"
     results = [
-        ("most penetrating size", f"{length(p.mpps['diameter'])}: {_share(p.mpps['efficiency'])}"),
-        ("the same after Lee and Liu", f"{length(p.mpps['lee_liu_diameter'])}: {_share(p.mpps['lee_liu_efficiency'])}"),
+        ("most penetrating size", f"{length(p.mpps['diameter'])}: {share(p.mpps['efficiency'])}"),
+        ("the same after Lee and Liu", f"{length(p.mpps['lee_liu_diameter'])}: {share(p.mpps['lee_liu_efficiency'])}"),
         (f"figure of merit -ln(P)/dp ({p.pressure_model})", merit["a34"]),
         (f"the paper's E/dp ({p.pressure_model})", merit["paper"]),
-        (
-            "HEPA: 99.97 % at 300 nm, 320 Pa at 2.5 cm/s",
-            f"{verdict}: {_share(float(p.hepa['efficiency'] or 0.0))}, {_pascal(p.hepa['pressure_drop'])} Pa",
-        ),
+        *_classes(p),
+        ("HEPA: at least 99.97 % at 300 nm, at most 320 Pa at 2.5 cm/s", _hepa(p)),
     ]
     if p.aerosol["spread"] > 1.0:
-        results.append((f"aerosol of spread {p.aerosol['spread']:.3g}, by count", _share(p.aerosol["count"])))
-        results.append((f"aerosol of spread {p.aerosol['spread']:.3g}, by mass", _share(p.aerosol["mass"])))
+        results.append((f"aerosol of spread {p.aerosol['spread']:.3g}, by count", share(p.aerosol["count"])))
+        results.append((f"aerosol of spread {p.aerosol['spread']:.3g}, by mass", share(p.aerosol["mass"])))
     results.extend(("warning", text) for text in p.warnings)
     return (
         Table("Filter", ("", ""), medium),
@@ -87,6 +113,28 @@ def prediction_tables(prediction: Prediction) -> tuple[Table, ...]:
         ),
         Table("Filter performance", ("", ""), tuple(results)),
     )
+
+
+def _classes(p: Prediction) -> list[tuple[str, str]]:
+    """Classes of the medium by its penetration at the most penetrating size."""
+    penetration = 1.0 - p.mpps["efficiency"]
+    european, international = en_1822_class(penetration), iso_29463_class(penetration)
+    if european is None:
+        return [("class at that size", "below E10 of EN 1822")]
+    return [("class at that size", f"{european} of EN 1822, {international} of ISO 29463 (of the medium)")]
+
+
+def _hepa(p: Prediction) -> str:
+    efficiency, drop = float(p.hepa["efficiency"] or 0.0), p.hepa["pressure_drop"]
+    found = f"{share(efficiency)}, {pascal(drop)} Pa"
+    if p.hepa["passes"]:
+        return f"passes: {found}"
+    broken = []
+    if efficiency < HEPA_EFFICIENCY:
+        broken.append(f"efficiency below {HEPA_EFFICIENCY:.2%}")
+    if drop is None or drop > HEPA_PRESSURE_DROP:
+        broken.append(f"pressure drop above {HEPA_PRESSURE_DROP:g} Pa")
+    return f"fails, {' and '.join(broken)}: {found}"
 
 
 def comparison_tables(comparison: Comparison) -> tuple[Table, ...]:
@@ -102,7 +150,7 @@ def comparison_tables(comparison: Comparison) -> tuple[Table, ...]:
     """
     c = comparison
     rows = tuple(
-        (row.title or name, *(_pascal(value) for value in (row.nominal, row.surface, row.mesh)), "; ".join(row.notes))
+        (row.title or name, *(pascal(value) for value in (row.nominal, row.surface, row.mesh)), "; ".join(row.notes))
         for name, row in c.models.items()
     )
     heads = tuple(f"{name} {share:.3%}" for name, share in c.solidity.items())
@@ -114,7 +162,7 @@ def comparison_tables(comparison: Comparison) -> tuple[Table, ...]:
     )
     reference = MODELS[REFERENCE].title
     means = tuple(
-        (name, length(diameter), _pascal(c.models[REFERENCE].mesh * (c.fiber_diameter / diameter) ** 2))
+        (name, length(diameter), pascal(c.models[REFERENCE].mesh * (c.fiber_diameter / diameter) ** 2))
         for name, diameter in c.fiber_diameters.items()
     )
     return (

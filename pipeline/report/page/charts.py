@@ -26,6 +26,7 @@ _SECTORS = 12  # of 15 degrees each
 _BINS = 60
 _MANY = 30.0  # the worst over the median, from which a logarithmic scale shows more
 _LEAST = 0.7  # lowest count shown: a single cell still has height on a logarithmic scale
+_LINEAR = ("degree",)  # units whose whole range fits on a plain scale
 _SAME = 1e-9  # values that differ by less, relatively, differ by rounding
 
 
@@ -131,6 +132,8 @@ def metric_histogram(metric: Metric, values: Floats) -> Markup | None:
 
 def _wants_decades(metric: Metric, values: Floats) -> bool:
     """Whether the side of trouble spans so much that it shows only on a logarithmic scale."""
+    if metric.unit in _LINEAR:
+        return False
     middle = float(np.median(values))
     if metric.worst_is == "largest":
         return bool(middle > 0 and values.max() > _MANY * middle)

@@ -5,7 +5,8 @@
 import math
 
 from pipeline.analytics.models.prediction import filter_of_mat, predict
-from pipeline.analytics.settings import FilterSettings
+from pipeline.analytics.models.single_fiber import PRESETS
+from pipeline.analytics.settings import FilterSettings, FlowSettings
 from pipeline.analytics.tables.rows import comparison_tables, length, prediction_tables
 from pipeline.line.results import Results
 from pipeline.nouns.comparison import Comparison
@@ -49,8 +50,8 @@ def solution(content: Results) -> Section | None:
     facts = [
         ("pressure drop", f"{s.pressure_drop:.4g} Pa"),
         ("permeability of the mat", f"{1e12 * s.permeability:.4g} µm²"),
-        ("drag on the fibers", f"{s.drag:.4g} N"),
-        ("flow rate", f"{s.flow_rate:.4g} m³/s"),
+        ("drag on the fibers", f"{1e9 * s.drag:.4g} nN"),
+        ("flow rate", f"{1e9 * s.flow_rate:.4g} mm³/s"),
         ("iterations", f"{s.iterations:,}, {'settled' if s.converged else 'not settled'}"),
         ("time", f"{s.seconds:.3g} s on {s.cores} core{'s' if s.cores > 1 else ''}"),
     ]
@@ -90,5 +91,15 @@ def prediction(content: Results) -> Section | None:
     narrow = tuple((table,) for table in shown if len(table.columns) < _WIDE)
     wide = [table for table in shown if len(table.columns) >= _WIDE]
     drawn = Charts(tuple(charts.prediction_charts(medium, flow)))
-    parts: tuple[Part, ...] = (Text(f"From {basis}.", "soft"), drawn, Columns(narrow, even=True), *wide)
+    basis_of = f"From {basis}. {_bend(medium, flow)}"
+    parts: tuple[Part, ...] = (Text(basis_of.strip(), "soft"), drawn, Columns(narrow, even=True), *wide)
     return Section("prediction", "Efficiency", "Efficiency by the single-fiber model", parts)
+
+
+def _bend(medium: FilterSettings, flow: FlowSettings) -> str:
+    """Explain the bend that impaction puts into the curves."""
+    cutoff = PRESETS[flow.preset].impaction_cutoff
+    if not math.isfinite(cutoff):
+        return ""
+    place = length(cutoff * medium.fiber_diameter)
+    return f"The curves bend at {place}, {cutoff:g} fiber diameters: from there on impaction's J is 2.0, after Hinds."

@@ -42,8 +42,8 @@ def unit_of(mesh: FaceMesh) -> LengthUnit:
 
 
 def unit_for(extent: float) -> LengthUnit:
-    """Give the unit in which the largest extent [m] is a number of at least two."""
-    return next((unit for unit in _UNITS if extent * unit.per_meter >= 2.0), MICROMETER)
+    """Give the unit in which the largest extent [m] is a number of at least one."""
+    return next((unit for unit in _UNITS if extent * unit.per_meter >= 1.0 - 1e-9), MICROMETER)
 
 
 def section(content: Results) -> Section | None:

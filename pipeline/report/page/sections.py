@@ -43,7 +43,7 @@ def mat(content: Results) -> Section | None:
         facts.append(("united surface", f"{len(surface.triangles):,} triangles, solidity {surface.solidity:.3%}"))
     top = Picture("mat-top", "From downstream: x to the right, y up. One color per fiber; twelve colors take turns.")
     side = Picture("mat-side", "From the side: x to the right, the air flows upward.")
-    return Section("mat", "Mat", "The mat", (Columns(((top,), (side, Facts(tuple(facts))))), Charts(tuple(figures))))
+    return Section("mat", "Mat", "The mat", (Columns(((top,), (side,))), Facts(tuple(facts)), Charts(tuple(figures))))
 
 
 def _deviation(std: float) -> str:
@@ -95,7 +95,7 @@ def mesh(content: Results) -> Section | None:
         "behind them.",
     )  # fmt: skip
     views = (
-        Picture("close-up", "The same plane around one fiber, as wide as the mat is thick."),
+        Picture("close-up", "The same plane around one fiber, five fiber diameters high."),
         Picture("cells", "The whole cells behind that plane, with all fibers."),
         Picture("mesh-fibers", "The mesh's faces on the fibers, one color per fiber."),
     )

@@ -99,8 +99,8 @@ def _solidities(content: Results, c: Comparison) -> list[Check]:
         Check(
             GOOD if fine else BAD,
             "what meshing costs",
-            f"The mesh keeps the fibers' volume within {kept:+z.2%} (the case allows {allowed:.2%}), "
-            f"which moves the pressure drop by {meshing:+z.2%}{advice}.",
+            f"The fibers' volume in the mesh is {kept:+z.3%} off that of their surface (allowed: {allowed:.2%}), which "
+            f"moves the models' pressure drop by {meshing:+z.3%}{advice}.",
         ),
         Check(
             NOTE if abs(overlap) > allowed else GOOD,

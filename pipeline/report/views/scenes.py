@@ -46,6 +46,9 @@ if TYPE_CHECKING:
     import pyvista as pv
 
 
+_CLOSE = 5.0  # fiber radii from the middle of the close-up to its upper and lower end
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class Subject:
     """What there is to draw; `worst` are the places (n, 3) [m] of the worst cells and faces beyond a limit."""
@@ -131,12 +134,12 @@ def cut_through_cells(plotter: "pv.Plotter", subject: Subject) -> None:
 
 
 def cut_close_up(plotter: "pv.Plotter", subject: Subject) -> None:
-    """Draw a part of the same plane as wide as the mat is thick, so that single cells can be told apart."""
+    """Draw a part of the same plane, a few fibers wide, so that single cells can be told apart."""
     _add_slice(plotter, subject, edges=1.6)
     mesh = subject.mesh
     assert mesh is not None
     low, high = np.array(subject.mat.slab.lower), np.array(subject.mat.slab.upper)
-    half = 0.5 * min(high[1] - low[1], high[2] - low[2])
+    half = min(_CLOSE * float(subject.mat.radius.max()), 0.5 * float((high - low)[1:].min()))
     # around the fiber that the plane meets nearest to the middle: that of the walls within half a radius of it
     walls = _fiber_faces(mesh) * MICRO
     met = np.abs(walls[:, 0] - MICRO * _middle(subject)) < 0.5 * MICRO * float(subject.mat.radius.min())
