@@ -15,6 +15,9 @@ from pipeline.line.run import Run, run
 settings.register_profile("fibertwin", deadline=None)
 settings.load_profile("fibertwin")
 
+# pytest's own 1e-12 is more than any area or volume of a fiber in SI: with it, no such comparison could fail
+type(pytest.approx(1.0)).DEFAULT_ABSOLUTE_TOLERANCE = 0.0  # type: ignore[attr-defined]
+
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     if shutil.which("checkMesh"):

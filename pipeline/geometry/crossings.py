@@ -7,6 +7,9 @@ from numba import njit
 
 from pipeline.geometry.triangles import Floats, Ints
 
+ROUNDING = 1e-10
+"""Depth of a cut, in extents of the surface, that a union may make by rounding: manifold3d works to 1e-12 of them."""
+
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
 def _volume(a: Floats, b: Floats, c: Floats, d: Floats) -> float:
@@ -17,17 +20,31 @@ def _volume(a: Floats, b: Floats, c: Floats, d: Floats) -> float:
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
-def _pierces(p: Floats, q: Floats, a: Floats, b: Floats, c: Floats) -> bool:
+def _pierces(p: Floats, q: Floats, a: Floats, b: Floats, c: Floats, depth: float) -> bool:
     """Whether the segment from p to q goes through the inside of the triangle; touching does not count."""
     if _volume(a, b, c, p) * _volume(a, b, c, q) >= 0.0:
         return False
     one, two, three = _volume(p, q, a, b), _volume(p, q, b, c), _volume(p, q, c, a)
-    return bool((one > 0.0 and two > 0.0 and three > 0.0) or (one < 0.0 and two < 0.0 and three < 0.0))
+    if not ((one > 0.0 and two > 0.0 and three > 0.0) or (one < 0.0 and two < 0.0 and three < 0.0)):
+        return False
+    if depth == 0.0:
+        return True
+    ab, bc, ca, pq = _length(a, b), _length(b, c), _length(c, a), _length(p, q)
+    # each product divided by these lengths is no more than the distance that it stands for
+    least = depth * ab * ca
+    if min(abs(_volume(a, b, c, p)), abs(_volume(a, b, c, q))) <= least:
+        return False
+    return bool(abs(one) > depth * pq * ab and abs(two) > depth * pq * bc and abs(three) > depth * pq * ca)
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
-def cross(points: Floats, one: Ints, two: Ints) -> bool:
-    """Whether two triangles cut each other away from the corners that they share.
+def _length(a: Floats, b: Floats) -> float:
+    return float(np.sqrt((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2 + (b[2] - a[2]) ** 2))
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def cross(points: Floats, one: Ints, two: Ints, depth: float = 0.0) -> bool:
+    """Whether two triangles cut each other, deeper than `depth`, away from the corners that they share.
 
     Triangles that share an edge do not count, nor do those that only touch.
     """
@@ -43,7 +60,7 @@ def cross(points: Floats, one: Ints, two: Ints) -> bool:
             meets = False
             for j in range(3):
                 meets = meets or two[j] == p or two[j] == q
-            if not meets and _pierces(points[p], points[q], points[two[0]], points[two[1]], points[two[2]]):
+            if not meets and _pierces(points[p], points[q], points[two[0]], points[two[1]], points[two[2]], depth):
                 return True
         one, two = two, one
     return False
@@ -131,20 +148,61 @@ def crosses_any(
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
-def _crossed(points: Floats, triangles: Ints, size: float) -> Ints:
+def _one_side(points: Floats, one: Ints, two: Ints) -> bool:
+    """Whether all corners of a triangle lie on one side of the other's plane, or on it."""
+    a, b, c = points[two[0]], points[two[1]], points[two[2]]
+    first = _volume(a, b, c, points[one[0]])
+    second = _volume(a, b, c, points[one[1]])
+    third = _volume(a, b, c, points[one[2]])
+    return bool(min(first, second, third) >= 0.0 or max(first, second, third) <= 0.0)
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _pairs(points: Floats, triangles: Ints, size: float, depth: float) -> Ints:
     low, shape, first, member = bins(points, triangles, size, 0.0)
-    nothing = np.empty(0, dtype=np.int64)
-    found = np.zeros(len(triangles), dtype=np.int64)
+    boxes = np.empty((len(triangles), 2, 3))
     for t in range(len(triangles)):
-        if crosses_any(points, triangles, triangles[t], nothing, low, shape, first, member, size):
-            found[t] = 1
-    return np.flatnonzero(found)
+        for axis in range(3):
+            a, b, c = (points[triangles[t, 0], axis], points[triangles[t, 1], axis], points[triangles[t, 2], axis])
+            boxes[t, 0, axis], boxes[t, 1, axis] = min(a, b, c), max(a, b, c)
+    seen = np.full(len(triangles), -1)
+    found = np.empty((64, 2), dtype=np.int64)
+    count = 0
+    for t in range(len(triangles)):
+        begin, end = cells_of(points, triangles[t], low, size, 0.0)
+        for x in range(begin[0], end[0] + 1):
+            for y in range(begin[1], end[1] + 1):
+                for z in range(begin[2], end[2] + 1):
+                    cube = (x * shape[1] + y) * shape[2] + z
+                    # members of a cube ascend: each pair is met once, from its greater triangle
+                    for k in range(first[cube], first[cube + 1]):
+                        other = member[k]
+                        if other >= t:
+                            break
+                        if seen[other] == t:
+                            continue
+                        seen[other] = t
+                        apart = False
+                        for axis in range(3):
+                            apart = apart or boxes[t, 0, axis] > boxes[other, 1, axis]
+                            apart = apart or boxes[other, 0, axis] > boxes[t, 1, axis]
+                        if apart or _one_side(points, triangles[t], triangles[other]):
+                            continue
+                        if _one_side(points, triangles[other], triangles[t]):
+                            continue
+                        if cross(points, triangles[t], triangles[other], depth):
+                            if count == len(found):
+                                found = np.concatenate((found, np.empty_like(found)))
+                            found[count, 0], found[count, 1] = other, t
+                            count += 1
+    return found[:count]
 
 
-def self_intersections(points: Floats, triangles: Ints) -> Ints:
-    """Find the triangles that cut through another one.
+def crossing_pairs(points: Floats, triangles: Ints) -> Ints:
+    """Find the pairs of triangles that cut through each other.
 
-    An edge that goes through the inside of a triangle counts; touching does not, nor do triangles that share an edge.
+    An edge that goes through the inside of a triangle counts; touching does not, nor do triangles that share an edge,
+    nor cuts less deep than `ROUNDING` of the surface's extent.
 
     Parameters
     ----------
@@ -153,18 +211,23 @@ def self_intersections(points: Floats, triangles: Ints) -> Ints:
 
     Returns
     -------
-    (k,) int array
-        Their indices.
+    (k, 2) int array
+        Two different triangles each, the lesser first; each pair once.
 
     Examples
     --------
     >>> flat = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.2, -1], [0.2, 0.2, 1], [0.3, 5, 0.0]])
-    >>> self_intersections(flat, np.array([[0, 1, 2], [3, 4, 5]])).tolist()
-    [0, 1]
+    >>> crossing_pairs(flat, np.array([[0, 1, 2], [3, 4, 5]])).tolist()
+    [[0, 1]]
     """
     # triple products of micrometers are 1e-18: no harm, but cubes as large as a usual triangle
     edge = float(np.median(np.linalg.norm(points[triangles[:, 0]] - points[triangles[:, 1]], axis=1)))
     longest = float(np.ptp(points, axis=0).max())
     size = max(edge, longest / 200.0)
-    found: Ints = _crossed(np.ascontiguousarray(points), np.ascontiguousarray(triangles), size)
-    return found
+    pairs: Ints = _pairs(np.ascontiguousarray(points), np.ascontiguousarray(triangles), size, ROUNDING * longest)
+    return pairs
+
+
+def self_intersections(points: Floats, triangles: Ints) -> Ints:
+    """Find the triangles that cut through another one, as `crossing_pairs` sees them; their indices, (k,) int array."""
+    return np.unique(crossing_pairs(points, triangles))

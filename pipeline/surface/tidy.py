@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from pipeline.geometry.crossings import bins, crosses_any
+from pipeline.geometry.crossings import bins, cells_of, crosses_any
 from pipeline.nouns.arrays import Floats, Ints
 
 _SHARPEST_WEDGE = -0.9  # cosine between the normals of neighbors: a wedge of 26 degrees
@@ -138,11 +138,14 @@ def _collapse(
     crease: Ints,
     least: Floats,
     alive: Bools,
+    locked: Bools,
     near: Near,
 ) -> int:
-    """Collapse edges, none next to another one that has just gone; give how many."""
+    """Collapse edges, none next to another one that has just gone; give how many.
+
+    Points that are `locked` stay, and what is next to a change becomes so.
+    """
     first, around = _stars(triangles, len(points))
-    locked = np.zeros(len(points), dtype=np.bool_)
     count = 0
     for e in range(len(pairs)):
         for turn in range(2):
@@ -168,10 +171,9 @@ def _collapse(
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]
-def _flip(points: Floats, triangles: Ints, label: Ints, sides: Ints, least: Floats, near: Near) -> int:
-    """Turn the longest side of triangles that have next to no height; give how many."""
+def _flip(points: Floats, triangles: Ints, label: Ints, sides: Ints, least: Floats, locked: Bools, near: Near) -> int:
+    """Turn the longest side of triangles that have next to no height; give how many. As for `_collapse`."""
     first, around = _stars(triangles, len(points))
-    locked = np.zeros(len(points), dtype=np.bool_)
     nothing = np.empty(0, dtype=np.int64)
     count = 0
     for t in range(len(triangles)):
@@ -225,9 +227,14 @@ def _flip(points: Floats, triangles: Ints, label: Ints, sides: Ints, least: Floa
     return count
 
 
-def _near(points: Floats, triangles: Ints, pad: float) -> Near:
-    edge = float(np.median(np.linalg.norm(points[triangles[:, 0]] - points[triangles[:, 1]], axis=1)))
-    size = max(edge, float(np.ptp(points, axis=0).max()) / 200.0)
+def _cube(points: Floats, triangles: Ints, edge: float) -> float:
+    """Size of cubes as large as a usual triangle, but no more than about eight of them per triangle."""
+    extent = np.maximum(np.ptp(points[triangles].reshape(-1, 3), axis=0), edge)
+    return max(edge, float(np.prod(extent) / (8.0 * len(triangles))) ** (1.0 / 3.0))
+
+
+def _near(points: Floats, triangles: Ints, edge: float, pad: float) -> Near:
+    size = _cube(points, triangles, edge)
     return (*bins(points, triangles, size, pad), size)
 
 
@@ -236,7 +243,8 @@ def tidied(
 ) -> tuple[Floats, Ints, Ints]:
     """Collapse edges shorter than the tolerance and flip triangles a tenth of it high.
 
-    Nothing is done that would fold the surface or make it cut through itself.
+    Nothing is done that would fold the surface or make it cut through itself. Each round looks only at what lies near
+    the changes of the one before.
 
     Parameters
     ----------
@@ -255,29 +263,115 @@ def tidied(
     points, triangles, fiber
         The closed surface that is left.
     """
-    triangles, fiber = triangles.copy(), fiber.copy()
+    edge = float(np.median(np.linalg.norm(points[triangles[:, 0]] - points[triangles[:, 1]], axis=1)))
+    done: list[tuple[Ints, Ints]] = []
+    fresh, rim = np.ones(len(points), dtype=np.bool_), np.zeros(len(points), dtype=np.bool_)
     for _ in range(_MOST_ROUNDS):
-        thinnest, thickest = np.full(len(points), np.iinfo(np.int64).max), np.full(len(points), -1)
-        size = np.full(len(points), np.inf)
-        for k in range(3):
-            np.minimum.at(thinnest, triangles[:, k], fiber)
-            np.maximum.at(thickest, triangles[:, k], fiber)
-            np.minimum.at(size, triangles[:, k], 2.0 * radius[fiber])
-        crease = (thinnest != thickest).astype(np.int64)
-        short = tolerance * size
-        pairs = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-        pairs = pairs[pairs[:, 0] < pairs[:, 1]]
-        length = np.linalg.norm(points[pairs[:, 0]] - points[pairs[:, 1]], axis=1)
-        chosen = length < np.minimum(short[pairs[:, 0]], short[pairs[:, 1]])
-        order = np.argsort(length[chosen], kind="stable")
-        near = _near(points, triangles, float(short[np.isfinite(short)].max()))
+        crease, short, bad = _marks(points, triangles, fiber, radius, sides, tolerance, fresh & ~rim)
+        if not bad.any():
+            break
+        pad = float(short[bad].max())
+        inside = _region(points, triangles, bad, _cube(points, triangles, edge), pad)
+        done.append((triangles[~inside], fiber[~inside]))
+        rim[triangles[~inside]] = True
+        triangles, fiber = triangles[inside], fiber[inside]
+        near = _near(points, triangles, edge, pad)
         alive = np.ones(len(triangles), dtype=np.bool_)
-        changed = _collapse(points, triangles, pairs[chosen][order], sides, crease, 0.1 * short, alive, near)
+        fresh = rim.copy()
+        pairs = _short_edges(points, triangles, short)
+        changed = _collapse(points, triangles, pairs, sides, crease, 0.1 * short, alive, fresh, near)
         triangles, fiber = triangles[alive], fiber[alive]
         if changed:
-            near = _near(points, triangles, 0.0)
-        changed += _flip(points, triangles, fiber, sides, 0.1 * short, near)
+            near = _near(points, triangles, edge, 0.0)
+        turned = rim.copy()
+        changed += _flip(points, triangles, fiber, sides, 0.1 * short, turned, near)
+        fresh |= turned
         if changed == 0:
             break
+    triangles = np.concatenate([triangles, *(part for part, _ in done)])
+    fiber = np.concatenate([fiber, *(owner for _, owner in done)])
     used, corner = np.unique(triangles, return_inverse=True)
     return points[used], corner.reshape(triangles.shape), fiber
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _marks(
+    points: Floats, triangles: Ints, fiber: Ints, radius: Floats, sides: Ints, tolerance: float, fresh: Bools
+) -> tuple[Ints, Floats, Bools]:
+    """Mark the points.
+
+    Returns
+    -------
+    crease : (n,) int array
+        1 where fibers meet.
+    short : (n,) array [m]
+        Length that counts as short at each point.
+    bad : (n,) bool array
+        Ends of short edges that may be collapsed, and corners of triangles without height that may be flipped, each
+        with a fresh point at least.
+    """
+    owner, crease = np.full(len(points), -1), np.zeros(len(points), dtype=np.int64)
+    short = np.full(len(points), np.inf)
+    for t in range(len(triangles)):
+        for k in range(3):
+            v = triangles[t, k]
+            if owner[v] >= 0 and owner[v] != fiber[t]:
+                crease[v] = 1
+            owner[v] = fiber[t]
+            short[v] = min(short[v], 2.0 * tolerance * radius[fiber[t]])
+    bad = np.zeros(len(points), dtype=np.bool_)
+    for t in range(len(triangles)):
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        if not (fresh[a] or fresh[b] or fresh[c]):
+            continue
+        for p, q in ((a, b), (b, c), (c, a)):
+            edge = points[p] - points[q]
+            if not (sides[p] and sides[q]) and np.sqrt(edge @ edge) < min(short[p], short[q]):
+                bad[p] = True
+                bad[q] = True
+        _, height, _ = _normal(points[a], points[b], points[c])
+        if height < 0.1 * short[a] and not sides[a] & sides[b] & sides[c]:
+            bad[a] = True
+            bad[b] = True
+            bad[c] = True
+    return crease, short, bad
+
+
+def _short_edges(points: Floats, triangles: Ints, short: Floats) -> Ints:
+    """Edges, (k, 2), that are short for both of their ends, the shortest first."""
+    pairs = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    pairs = pairs[pairs[:, 0] < pairs[:, 1]]
+    length = np.linalg.norm(points[pairs[:, 0]] - points[pairs[:, 1]], axis=1)
+    chosen = length < np.minimum(short[pairs[:, 0]], short[pairs[:, 1]])
+    return pairs[chosen][np.argsort(length[chosen], kind="stable")]
+
+
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def _region(points: Floats, triangles: Ints, bad: Bools, size: float, pad: float) -> Bools:
+    """Find the triangles that may come near what changes when the bad points and their neighbors are treated."""
+    for _ring in range(2):
+        wider = bad.copy()
+        for t in range(len(triangles)):
+            if bad[triangles[t, 0]] or bad[triangles[t, 1]] or bad[triangles[t, 2]]:
+                for k in range(3):
+                    wider[triangles[t, k]] = True
+        bad = wider
+    low, high = np.empty(3), np.empty(3)
+    for axis in range(3):
+        low[axis], high[axis] = points[:, axis].min() - 2.0 * pad, points[:, axis].max() + 2.0 * pad
+    shape = ((high - low) / size).astype(np.int64) + 1
+    cubes = np.zeros((shape[0], shape[1], shape[2]), dtype=np.bool_)
+    inside = np.zeros(len(triangles), dtype=np.bool_)
+    for sweep in range(2):
+        for t in range(len(triangles)):
+            if sweep == 0 and not (bad[triangles[t, 0]] or bad[triangles[t, 1]] or bad[triangles[t, 2]]):
+                continue
+            begin, end = cells_of(points, triangles[t], low, size, pad)
+            for x in range(begin[0], end[0] + 1):
+                for y in range(begin[1], end[1] + 1):
+                    for z in range(begin[2], end[2] + 1):
+                        if sweep == 0:
+                            cubes[x, y, z] = True
+                        elif cubes[x, y, z]:
+                            inside[t] = True
+    return inside

@@ -4,46 +4,15 @@
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from pipeline.geometry.solids import Body
 from pipeline.geometry.triangles import Floats, Ints
+from pipeline.surface.joints import directions, frames, miter_offsets, polygon_radius, sharp_bends
 from pipeline.surface.settings import SurfaceSettings
-
-SHARPEST_MITER = 2.0 * math.pi / 3.0
-"""Turn [rad] beyond which a bend gets a sphere: there a miter's tip is two radii from the bend."""
-
-
-def polygon_radius(radius: float, sides: int) -> float:
-    r"""Distance from axis to corners so that a tube has the cylinder's volume.
-
-    Successive rings are turned by half a corner, so that the surface between them is an antiprism's. By the
-    prismatoid rule its mean cross-section is
-
-    .. math:: \bar A = \tfrac{n}{3} R^2 \sin\tfrac{\pi}{n} \left(1 + 2 \cos\tfrac{\pi}{n}\right),
-
-    one third of the polygon with n corners and two thirds of the one with 2n corners half way.
-
-    Parameters
-    ----------
-    radius : float [m]
-    sides : int
-        n, 3 or more.
-
-    Returns
-    -------
-    float [m]
-        :math:`R`.
-
-    Examples
-    --------
-    >>> round(polygon_radius(1.0, 12), 5)
-    1.01736
-    """
-    angle = math.pi / sides
-    return radius * math.sqrt(3.0 * angle / (math.sin(angle) * (1.0 + 2.0 * math.cos(angle))))
+from pipeline.surface.stretches import stretches
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +23,37 @@ class Ends:
     stop: str
 
 
-def tubes(nodes: Floats, radius: float, ends: Ends, settings: SurfaceSettings) -> list[Body]:
+@dataclass(frozen=True, eq=False, slots=True)
+class _Rings:
+    """Rings of corners along a mitred center line.
+
+    Parameters
+    ----------
+    points : (rings, sides, 3) array [m]
+    center : (rings, 3) array [m]
+        Where the axis goes through each ring's plane.
+    piece : (rings,) int array
+        Piece of the center line that the band after each ring lies on.
+    direction : (pieces, 3) array [-]
+    reach : float [m]
+        From the axis to the corners.
+    """
+
+    points: Floats
+    center: Floats
+    piece: Ints
+    direction: Floats
+    reach: float
+
+
+class Tube(NamedTuple):
+    """A closed tube, and whether it begins within the ball that ends the tube before it."""
+
+    body: Body
+    in_ball: bool
+
+
+def tubes(nodes: Floats, radius: float, ends: Ends, settings: SurfaceSettings) -> list[Tube]:
     """Build the closed tubes whose union is one fiber.
 
     Parameters
@@ -67,100 +66,33 @@ def tubes(nodes: Floats, radius: float, ends: Ends, settings: SurfaceSettings) -
 
     Returns
     -------
-    list of (points, triangles)
-        One tube where every bend can be mitred, else one per stretch between spherical joints; each is closed,
-        outward and does not cut itself between neighboring rings.
+    list of Tube
+        One tube, unless bends need balls or the fiber runs into itself: then one per stretch between them. Each is
+        closed, outward and does not cut itself; the two on a cut that is no ball share its disc, bit by bit.
     """
-    breaks = _breaks(nodes, radius, settings)
-    stops = [*breaks, len(nodes) - 1]
-    starts = [0, *breaks]
-    return [
-        _tube(
-            nodes[start : stop + 1],
-            radius,
-            # the ball on a bend belongs to the stretch before it; the next stretch begins flat inside that ball
-            Ends(
-                ends.start if start == 0 else "flat",
-                ends.stop if stop == len(nodes) - 1 else "hemisphere",
-            ),
-            settings,
+    balls = sharp_bends(nodes, radius, settings)
+    found: list[Tube] = []
+    for start, stop in zip([0, *balls], [*balls, len(nodes) - 1], strict=True):
+        # the ball on a bend belongs to the stretch before it; the next stretch begins flat inside that ball
+        how = Ends(
+            ends.start if start == 0 else "flat",
+            ends.stop if stop == len(nodes) - 1 else "hemisphere",
         )
-        for start, stop in zip(starts, stops, strict=True)
-    ]
+        rings = _rings(nodes[start : stop + 1], radius, settings)
+        last = len(rings.center) - 1
+        points, triangles, band = _closed(rings, 0, last, how)
+        cuts = stretches(points, triangles, band, rings.piece, nodes[start : stop + 1], rings.reach)
+        for begin, end in zip([0, *cuts], [*cuts, last], strict=True):
+            part = Ends(how.start if begin == 0 else "flat", how.stop if end == last else "flat")
+            found.append(Tube(_closed(rings, begin, end, part)[:2], in_ball=start > 0 and begin == 0))
+    return found
 
 
-def _directions(nodes: Floats) -> tuple[Floats, Floats]:
-    step = np.diff(nodes, axis=0)
-    length = np.linalg.norm(step, axis=1)
-    return step / length[:, None], length
-
-
-def _frames(direction: Floats) -> tuple[Floats, Floats]:
-    # carried from piece to piece by the smallest rotation: corners stay on their own line through every bend
-    first = direction[0]
-    across = np.array([-first[1], first[0], 0.0])
-    if np.linalg.norm(across) < 1e-6:
-        across = np.array([1.0, 0.0, 0.0]) - first[0] * first
-    u = np.empty_like(direction)
-    u[0] = across / np.linalg.norm(across)
-    for k in range(1, len(direction)):
-        before, after = direction[k - 1], direction[k]
-        both = before + after
-        turn = 1.0 + before @ after
-        if turn < 1e-6:  # straight back: any frame will do, a sphere sits there
-            u[k] = u[k - 1]
-        else:
-            u[k] = u[k - 1] - (u[k - 1] @ after) / turn * both
-        u[k] -= (u[k] @ after) * after
-        u[k] /= np.linalg.norm(u[k])
-    return u, np.cross(direction, u)
-
-
-def _breaks(nodes: Floats, radius: float, settings: SurfaceSettings) -> list[int]:
-    """Find the inner nodes that need a sphere."""
-    inner = np.arange(1, len(nodes) - 1)
-    if settings.joint == "sphere":
-        return [int(k) for k in inner]
-    direction, length = _directions(nodes)
-    cosine = np.clip(np.einsum("ij,ij->i", direction[:-1], direction[1:]), -1.0, 1.0)
-    broken = np.zeros(len(nodes), dtype=bool)
-    broken[inner] = cosine < math.cos(SHARPEST_MITER)
-    u, v = _frames(direction)
-    angle = np.arange(2 * settings.sides) * math.pi / settings.sides
-    corner = polygon_radius(radius, settings.sides) * (
-        np.cos(angle)[None, :, None] * u[:, None, :] + np.sin(angle)[None, :, None] * v[:, None, :]
-    )
-    while True:
-        start, stop = _miters(direction, corner, broken)
-        # a piece too short for its two miters: they would cross and turn the tube inside out
-        crossed = (length[:, None] + stop - start).min(axis=1) < 0.02 * radius
-        ends = np.zeros(len(nodes), dtype=bool)
-        ends[:-1] |= crossed
-        ends[1:] |= crossed
-        ends[[0, -1]] = False
-        if not (ends & ~broken).any():
-            return [int(k) for k in np.flatnonzero(broken)]
-        broken |= ends
-
-
-def _miters(direction: Floats, corner: Floats, broken: npt.NDArray[np.bool_]) -> tuple[Floats, Floats]:
-    """How far along its piece each corner line runs past the piece's start and stop, (pieces, corners) each."""
-    start = np.zeros(corner.shape[:2])
-    stop = np.zeros(corner.shape[:2])
-    plane = direction[:-1] + direction[1:]
-    mitred = ~broken[1:-1]
-    for offset, piece in ((stop[:-1], slice(None, -1)), (start[1:], slice(1, None))):
-        along = np.einsum("ij,ij->i", direction[piece], plane)
-        run = -np.einsum("ikj,ij->ik", corner[piece], plane) / np.where(mitred, along, 1.0)[:, None]
-        offset[mitred] = run[mitred]
-    return start, stop
-
-
-def _tube(nodes: Floats, radius: float, ends: Ends, settings: SurfaceSettings) -> Body:
+def _rings(nodes: Floats, radius: float, settings: SurfaceSettings) -> _Rings:
     sides = settings.sides
     reach = polygon_radius(radius, sides)
-    direction, length = _directions(nodes)
-    u, v = _frames(direction)
+    direction, length = directions(nodes)
+    u, v = frames(direction)
     rings = np.maximum(1, np.rint(length / (settings.ring_spacing * 2.0 * radius))).astype(np.int64)
 
     piece = np.append(np.repeat(np.arange(len(length)), rings), len(length) - 1)
@@ -168,43 +100,40 @@ def _tube(nodes: Floats, radius: float, ends: Ends, settings: SurfaceSettings) -
     half = np.arange(len(piece)) % 2
     angle = (np.arange(sides)[None, :] + 0.5 * half[:, None]) * (2.0 * math.pi / sides)
     corner = reach * (np.cos(angle)[..., None] * u[piece][:, None, :] + np.sin(angle)[..., None] * v[piece][:, None, :])
-    begin, end = _runs(direction, corner, piece)
+    begin, end = miter_offsets(direction, corner, piece)
     along = (1.0 - share[:, None]) * begin + share[:, None] * (length[piece][:, None] + end)
     points = nodes[piece][:, None, :] + corner + along[..., None] * direction[piece][:, None, :]
+    center = nodes[piece] + (share * length[piece])[:, None] * direction[piece]
+    center[[0, -1]] = nodes[[0, -1]]
+    return _Rings(points, center, piece, direction, reach)
 
-    stacked = [points.reshape(-1, 3)]
-    triangles = [_between_rings(len(piece), sides)]
+
+def _closed(rings: _Rings, begin: int, end: int, ends: Ends) -> tuple[Floats, Ints, Ints]:
+    """Close the bands between two rings at both of them; give points, triangles, and the band of each triangle."""
+    sides = rings.points.shape[1]
+    stacked = [rings.points[begin : end + 1].reshape(-1, 3)]
+    triangles = [_between_rings(begin, end, sides)]
+    band = [np.repeat(np.arange(end - begin), 2 * sides)]
     for forward, how in ((False, ends.start), (True, ends.stop)):
-        ring = (len(piece) - 1 if forward else 0) * sides + np.arange(sides)
-        k = -1 if forward else 0
-        axis = direction[k] if forward else -direction[k]
+        at = end if forward else begin
+        ring = (at - begin) * sides + np.arange(sides)
+        axis = rings.direction[rings.piece[at]] * (1.0 if forward else -1.0)
         count = sum(len(part) for part in stacked)
-        cap_points, cap = _cap(ring, points[k], nodes[k], axis, reach, how, count)
+        cap_points, cap = _cap(ring, rings.points[at], rings.center[at], axis, rings.reach, how, count)
         stacked.append(cap_points)
         triangles.append(cap if forward else cap[:, ::-1])
-    return np.concatenate(stacked), np.concatenate(triangles)
+        band.append(np.full(len(cap), end - begin - 1 if forward else 0))
+    return np.concatenate(stacked), np.concatenate(triangles), np.concatenate(band)
 
 
-def _runs(direction: Floats, corner: Floats, piece: Ints) -> tuple[Floats, Floats]:
-    """Give the miter offsets at both ends of the piece that each ring lies on, for that ring's own corners."""
-    begin = np.zeros(corner.shape[:2])
-    end = np.zeros(corner.shape[:2])
-    last = len(direction) - 1
-    for offset, neighbor, has in ((begin, piece - 1, piece > 0), (end, piece + 1, piece < last)):
-        own = direction[piece[has]]
-        plane = own + direction[neighbor[has]]
-        offset[has] = -np.einsum("ikj,ij->ik", corner[has], plane) / np.einsum("ij,ij->i", own, plane)[:, None]
-    return begin, end
-
-
-def _between_rings(rings: int, sides: int) -> Ints:
-    """Triangles of the bands between successive rings, every second ring turned by half a corner."""
+def _between_rings(begin: int, end: int, sides: int) -> Ints:
+    """Triangles of the bands from one ring to another, every second ring turned by half a corner."""
     j = np.arange(sides)
     k = (j + 1) % sides
     even = np.concatenate([np.stack([j, k, j + sides], axis=1), np.stack([k, k + sides, j + sides], axis=1)])
     odd = np.concatenate([np.stack([j, k + sides, j + sides], axis=1), np.stack([j, k, k + sides], axis=1)])
-    bands = np.where((np.arange(rings - 1) % 2 == 0)[:, None, None], even[None], odd[None])
-    triangles: Ints = (bands + sides * np.arange(rings - 1)[:, None, None]).reshape(-1, 3)
+    bands = np.where((np.arange(begin, end) % 2 == 0)[:, None, None], even[None], odd[None])
+    triangles: Ints = (bands + sides * np.arange(end - begin)[:, None, None]).reshape(-1, 3)
     return triangles
 
 
@@ -231,7 +160,7 @@ def _cap(
     j = np.arange(sides)
     k = (j + 1) % sides
     label = np.concatenate([ring, count + np.arange((levels - 1) * sides)])
-    bands = _between_rings(levels, sides)
+    bands = _between_rings(0, levels - 1, sides)
     top = (levels - 1) * sides
     apex = np.full(sides, count + top)
     crown = np.stack([label[top + j], label[top + k], apex], axis=1)

@@ -6,13 +6,15 @@ import numpy as np
 
 from pipeline.errors import StageError
 from pipeline.geometry.box import Box
+from pipeline.geometry.crossings import self_intersections
 from pipeline.geometry.solids import Body, unite_within
 from pipeline.geometry.triangles import Floats, Ints
 from pipeline.nouns.fibers import Mat, Pieces
 from pipeline.nouns.surface import Surface
 from pipeline.progress import Progress, silent
+from pipeline.surface.joints import polygon_radius
 from pipeline.surface.settings import SurfaceSettings
-from pipeline.surface.tubes import Ends, polygon_radius, tubes
+from pipeline.surface.tubes import Ends, tubes
 
 _ON_FACE = 1e-6
 """Distance from a side, in radii, within which a fiber's end counts as lying on it: coordinates are rounded."""
@@ -37,9 +39,9 @@ def unite(mat: Mat, settings: SurfaceSettings, progress: Progress = silent) -> S
     Raises
     ------
     StageError
-        If no fiber lies within the plan, or the union fails.
+        If no fiber lies within the plan, the union fails, or the surface still cuts itself somewhere.
     """
-    bodies, fiber = fiber_bodies(mat, settings, progress)
+    bodies, fiber, _ = fiber_bodies(mat, settings, progress)
     progress(f"uniting {len(bodies)} tubes of {mat.fibers} fibers")
     points, triangles, body = unite_within(bodies, clipping_box(mat, bodies))
     if len(triangles) == 0:
@@ -54,10 +56,22 @@ def unite(mat: Mat, settings: SurfaceSettings, progress: Progress = silent) -> S
         points, triangles, fiber = tidied(
             points, triangles, fiber, mat.radius, _sides(points, mat.slab), settings.smallest_edge
         )
+    _refuse_cuts(points, triangles, fiber)
     return Surface(points, triangles, fiber, mat.radius, mat.slab, fiber_pieces(mat, settings))
 
 
-def fiber_bodies(mat: Mat, settings: SurfaceSettings, progress: Progress = silent) -> tuple[list[Body], Ints]:
+def _refuse_cuts(points: Floats, triangles: Ints, fiber: Ints) -> None:
+    cut = self_intersections(points, triangles)
+    if len(cut):
+        place = ", ".join(f"{1e6 * coordinate:.4g}" for coordinate in points[triangles[cut[0]]].mean(axis=0))
+        names = ", ".join(str(name) for name in np.unique(fiber[cut])[:5].tolist())
+        raise StageError(
+            f"{len(cut)} of {len(triangles)} triangles of the united surface cut another one, first at ({place}) um, of "
+            f"fibers {names}; set surface.smallest_edge = 0, or other surface.sides"
+        )
+
+
+def fiber_bodies(mat: Mat, settings: SurfaceSettings, progress: Progress = silent) -> tuple[list[Body], Ints, Ints]:
     """Build the closed tubes of every fiber, and of its periodic images that meet the plan.
 
     Parameters
@@ -72,9 +86,13 @@ def fiber_bodies(mat: Mat, settings: SurfaceSettings, progress: Progress = silen
         Running out through the plan's sides, not cut yet.
     fiber : (bodies,) int array
         Fiber that each body belongs to.
+    before : (bodies,) int array
+        The body that each one continues through a ball on a bend, with which it shares what lies in that ball; -1
+        where there is none.
     """
     bodies: list[Body] = []
     fiber: list[int] = []
+    before: list[int] = []
     for k in range(mat.fibers):
         if k % 100 == 0:
             progress("building tubes", k / mat.fibers)
@@ -83,11 +101,15 @@ def fiber_bodies(mat: Mat, settings: SurfaceSettings, progress: Progress = silen
             ends = Ends(settings.caps, settings.caps)
         else:
             nodes, ends = run_through(nodes, radius, mat.slab, settings)
-        for points, triangles in tubes(nodes, radius, ends, settings):
-            for shift in _images(points, mat):
-                bodies.append((points + shift, triangles))
+        last: dict[tuple[float, ...], int] = {}
+        for (points, triangles), in_ball in tubes(nodes, radius, ends, settings):
+            images = {tuple(shift.tolist()): len(bodies) + n for n, shift in enumerate(_images(points, mat))}
+            for shift in images:
+                bodies.append((points + np.array(shift), triangles))
                 fiber.append(k)
-    return bodies, np.array(fiber, dtype=np.int64)
+                before.append(last.get(shift, -1) if in_ball else -1)
+            last = images
+    return bodies, np.array(fiber, dtype=np.int64), np.array(before, dtype=np.int64)
 
 
 def fiber_pieces(mat: Mat, settings: SurfaceSettings) -> Pieces:

@@ -48,7 +48,8 @@ def test_vtk_s_fluent_reader_finds_the_same_cells(mesh: FaceMesh, tmp_path: Path
     found = pv.FluentReader(str(tmp_path / "mesh.msh")).read()[0]
     assert found.n_cells == mesh.cells
     sizes = np.sort(found.compute_cell_sizes()["Volume"])
-    assert sizes == pytest.approx(np.sort(mesh.polyhedra().volumes), rel=1e-12)
+    # VTK keeps points with 32 bits
+    assert sizes == pytest.approx(np.sort(mesh.polyhedra().volumes), rel=1e-5)
 
 
 def test_our_reader_gives_the_mesh_back_to_the_last_bit(mesh: FaceMesh, tmp_path: Path) -> None:
