@@ -9,31 +9,27 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
 from pipeline.errors import CaseError
 from pipeline.geometry.box import Box
-from pipeline.geometry.triangles import Floats
+from pipeline.geometry.triangles import Floats, Ints
+from pipeline.mat.fiber_notes import Notes
+from pipeline.mat.lengths import Unit, in_meters, in_micrometers, unit_of
+from pipeline.mat.windows import cut_to
 from pipeline.nouns.fibers import Mat
+from pipeline.progress import Progress, silent
 from pipeline.reading import read_bytes
-from pipeline.units import parse
 
 _COLUMNS = ("fiber", "x", "y", "z", "radius")
 _HEADER = re.compile(r"\s*(?P<name>\w+)\s*(?:\[\s*(?P<unit>[^\]]+?)\s*\])?\s*")
-_NOTE = re.compile(r"#\s*(?P<key>plan|thickness|periodic)\s*:\s*(?P<value>.*?)\s*")
-_PER_METER = 1e6
+_MOST_VARIED = 2.0
+"""Ratio of a fiber's largest radius to its smallest beyond which no single radius stands for it."""
+
 LARGEST_FILE = 200_000_000
 """No file of fibers is larger than this many bytes: as Python's own numbers its points take ten times as much."""
-
-
-@dataclass
-class _Notes:
-    """What the comment lines of a file state about its slab [m]; None where they are silent."""
-
-    plan: tuple[float, float] | None = None
-    thickness: float | None = None
-    periodic: bool | None = None
 
 
 @dataclass
@@ -46,6 +42,7 @@ class _Fibers:
     first: list[int] = field(default_factory=list)
     names: list[str] = field(default_factory=list)
     seen: set[str] = field(default_factory=set)
+    shapes: dict[tuple[tuple[float, float, float], ...], int] = field(default_factory=dict)
 
 
 def write_fibers(mat: Mat, path: Path) -> None:
@@ -55,21 +52,21 @@ def write_fibers(mat: Mat, path: Path) -> None:
     ----------
     mat : Mat
     path : Path
-        `read_fibers` gives the same mat back, to the rounding of the change of unit.
+        `read_fibers` gives the same mat back, bit by bit where the slab begins at 0.
     """
-    x, y, z = (size * _PER_METER for size in mat.slab.size)
+    x, y, z = (in_micrometers(size) for size in mat.slab.size)
     lines = [
-        f"# {mat.origin}",
-        f"# plan: {x!r} um x {y!r} um",
-        f"# thickness: {z!r} um",
+        f"# {' '.join(mat.origin.split())}",
+        f"# plan: {x} um x {y} um",
+        f"# thickness: {z} um",
         f"# periodic: {'yes' if mat.periodic else 'no'}",
         ",".join(["fiber", *(f"{name} [um]" for name in _COLUMNS[1:])]),
     ]
-    nodes = (mat.nodes - mat.slab.lower) * _PER_METER
+    nodes = mat.nodes - mat.slab.lower
+    radius = [in_micrometers(value) for value in mat.radius.tolist()]
     fiber = np.repeat(np.arange(mat.fibers), np.diff(mat.first))
-    radius = (mat.radius * _PER_METER)[fiber]
-    for k, (px, py, pz), r in zip(fiber.tolist(), nodes.tolist(), radius.tolist(), strict=True):
-        lines.append(f"{k},{px!r},{py!r},{pz!r},{r!r}")
+    for k, point in zip(fiber.tolist(), nodes.tolist(), strict=True):
+        lines.append(",".join([str(k), *map(in_micrometers, point), radius[k]]))
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
@@ -97,7 +94,13 @@ def write_spaceclaim(mat: Mat, path: Path) -> None:
     path.write_text(text.getvalue(), encoding="utf-8")
 
 
-def read_fibers(path: Path, side: float | None = None, periodic: bool | None = None) -> Mat:
+def read_fibers(
+    path: Path,
+    side: float | None = None,
+    periodic: bool | None = None,
+    outside: Literal["refuse", "cut"] = "refuse",
+    progress: Progress = silent,
+) -> Mat:
     """Read center lines from CSV.
 
     Parameters
@@ -108,13 +111,16 @@ def read_fibers(path: Path, side: float | None = None, periodic: bool | None = N
         Edge of the square plan, from (0, 0), where the file states none.
     periodic : bool, optional
         Whether the plan wraps; unless given, what the file says, or no.
+    outside : {"refuse", "cut"}
+        What becomes of axes that leave the slab: an error, or they end where they leave it.
+    progress : Progress
 
     Returns
     -------
     Mat
         Where neither `side` nor the file states a plan, the fibers are moved so that the smallest rectangle around
         the center lines starts at (0, 0); where the file states no thickness, so that the lowest surface lies at
-        z = 0.
+        z = 0. A fiber whose radius varies gets the one that keeps its volume.
 
     Raises
     ------
@@ -130,26 +136,29 @@ def read_fibers(path: Path, side: float | None = None, periodic: bool | None = N
         raise CaseError(f"{path} is not a text file in UTF-8: {problem.reason} at byte {problem.start}") from problem
     except ValueError as problem:
         raise CaseError(f"cannot read the fibers of {str(path)!r}: {problem}") from problem
-    notes, fibers = _Notes(), _Fibers()
+    notes, fibers = Notes(), _Fibers()
     rows = _rows(text, notes, path)
     number, header = next(rows, (1, []))
-    columns, per_meter = _read_header(header, path, number)
+    columns, units = _read_header(header, path, number)
     for number, row in rows:
         if len(row) != len(header):
             raise _wrong(
                 path, number, header[min(len(row), len(header) - 1)], f"{len(row)} values for {len(header)} columns"
             )
-        _add(fibers, [row[k] for k in columns], per_meter, [header[k] for k in columns], path, number)
+        _add(fibers, [row[k] for k in columns], units, [header[k] for k in columns], path, number)
     _close(fibers, path)
     if not fibers.names:
         raise _wrong(path, number, header[columns[0]], "no fiber follows the header")
     if side is not None and notes.plan is not None:
         raise CaseError(f"{path} states its own plan; leave mat.side out")
     plan = (side, side) if side is not None else notes.plan
-    return _mat(fibers, plan, notes.thickness, bool(notes.periodic if periodic is None else periodic), path)
+    wraps = bool(notes.periodic if periodic is None else periodic)
+    if wraps and outside == "cut":
+        raise CaseError(f"{path}: a periodic plan cuts no fiber; leave mat.outside out, or set mat.periodic = false")
+    return _mat(fibers, plan, notes.thickness, wraps, path, outside == "cut", progress)
 
 
-def _rows(text: str, notes: _Notes, path: Path) -> Iterator[tuple[int, list[str]]]:
+def _rows(text: str, notes: Notes, path: Path) -> Iterator[tuple[int, list[str]]]:
     """Give the rows with their line numbers, and keep what the comments among them state."""
     for number, line in enumerate(text.splitlines(), start=1):
         if not line.strip():
@@ -160,31 +169,17 @@ def _rows(text: str, notes: _Notes, path: Path) -> Iterator[tuple[int, list[str]
             except csv.Error as problem:
                 # as a value of more than 131072 letters
                 raise CaseError(f"{path}, line {number}: {problem}") from None
-        elif (note := _NOTE.fullmatch(line.strip())) is not None:
-            _read_note(note["key"], note["value"], notes, path, number)
-
-
-def _read_note(key: str, value: str, notes: _Notes, path: Path, number: int) -> None:
-    try:
-        if key == "plan":
-            x, y = (parse(part.strip(), "m") for part in value.split(" x "))
-            notes.plan = (x, y)
-        elif key == "thickness":
-            notes.thickness = parse(value, "m")
         else:
-            notes.periodic = {"yes": True, "no": False}[value]
-    except (ValueError, KeyError):
-        example = {"plan": "100 um x 100 um", "thickness": "46.4 um", "periodic": "yes"}[key]
-        raise CaseError(f"{path}, line {number}: write # {key}: {example}, not {value!r}") from None
+            notes.read(line.strip(), path, number)
 
 
-def _read_header(header: list[str], path: Path, number: int) -> tuple[list[int], list[float]]:
-    """Find the place of each column, and how many of its units make a meter."""
+def _read_header(header: list[str], path: Path, number: int) -> tuple[list[int], list[Unit]]:
+    """Find the place of each column, and the units of the four lengths."""
     places: dict[str, int] = {}
-    per_meter: dict[str, float] = {}
+    units: dict[str, Unit] = {}
     for place, text in enumerate(header):
         match = _HEADER.fullmatch(text)
-        name = match["name"] if match is not None else text
+        name = match["name"].lower() if match is not None else text
         if match is None or name not in _COLUMNS:
             raise _wrong(path, number, text, f"unknown column; known: {', '.join(_COLUMNS)}")
         if name in places:
@@ -192,28 +187,23 @@ def _read_header(header: list[str], path: Path, number: int) -> tuple[list[int],
         places[name] = place
         if name != "fiber":
             try:
-                unit = parse(f"1 {match['unit'] or ''}", "m")
+                units[name] = unit_of(match["unit"] or "")
             except ValueError:
                 raise _wrong(path, number, text, f"write the column's unit as {name} [um]") from None
-            # 500 / 1e9 is the float 5e-7, 500 * 1e-9 is not
-            per_meter[name] = float(f"{1.0 / unit:.15g}")
     missing = [name for name in _COLUMNS if name not in places]
     if missing:
         raise _wrong(path, number, missing[0], "missing from the header, which names fiber, x, y, z and radius")
-    return [places[name] for name in _COLUMNS], [per_meter[name] for name in _COLUMNS[1:]]
+    return [places[name] for name in _COLUMNS], [units[name] for name in _COLUMNS[1:]]
 
 
-def _add(fibers: _Fibers, row: list[str], per_meter: list[float], header: list[str], path: Path, number: int) -> None:
+def _add(fibers: _Fibers, row: list[str], units: list[Unit], header: list[str], path: Path, number: int) -> None:
     """Add one point, to the last fiber or to a new one."""
     values = []
-    for text, units, column in zip(row[1:], per_meter, header[1:], strict=True):
+    for text, unit, column in zip(row[1:], units, header[1:], strict=True):
         try:
-            value = float(text) / units
-        except ValueError:
-            raise _wrong(path, number, column, f"{text!r} is not a number") from None
-        if not np.isfinite(value):
-            raise _wrong(path, number, column, f"{text!r} is not a finite number")
-        values.append(value)
+            values.append(in_meters(text, unit))
+        except ValueError as problem:
+            raise _wrong(path, number, column, str(problem)) from None
     x, y, z, radius = values
     if radius <= 0:
         raise _wrong(path, number, header[4], f"a radius must be above 0, not {row[4]}")
@@ -224,24 +214,46 @@ def _add(fibers: _Fibers, row: list[str], per_meter: list[float], header: list[s
         fibers.seen.add(row[0])
         fibers.names.append(row[0])
         fibers.first.append(len(fibers.nodes))
-        fibers.radius.append(radius)
-    elif radius != fibers.radius[-1]:
-        raise _wrong(path, number, header[4], f"fiber {row[0]} changes its radius: one fiber has one")
     elif fibers.nodes[-1] == (x, y, z):
         raise _wrong(path, number, header[1], f"fiber {row[0]} has the same point twice in a row")
     fibers.nodes.append((x, y, z))
     fibers.lines.append(number)
+    fibers.radius.append(radius)
 
 
 def _close(fibers: _Fibers, path: Path) -> None:
-    if fibers.names and len(fibers.nodes) - fibers.first[-1] < 2:
-        raise _wrong(path, fibers.lines[-1], "fiber", f"fiber {fibers.names[-1]} has only one point")
+    """Check the last fiber as a whole."""
+    if not fibers.names:
+        return
+    name, begin = fibers.names[-1], fibers.first[-1]
+    if len(fibers.nodes) - begin < 2:
+        raise _wrong(path, fibers.lines[-1], "fiber", f"fiber {name} has only one point")
+    smallest, largest = min(fibers.radius[begin:]), max(fibers.radius[begin:])
+    if largest > _MOST_VARIED * smallest:
+        reason = (
+            f"fiber {name} changes its radius from {smallest * 1e6:.4g} to {largest * 1e6:.4g} um, {_MOST_VARIED:g} "
+            "times and more: no single radius stands for it; split the fiber where it changes"
+        )
+        raise _wrong(path, fibers.lines[begin + fibers.radius[begin:].index(largest)], "radius", reason)
+    points = tuple(fibers.nodes[begin:])
+    twin = fibers.shapes.setdefault(min(points, points[::-1]), begin)
+    if twin != begin:
+        reason = f"fiber {name} has the same points as the one on line {fibers.lines[twin]}: leave one of them out"
+        raise _wrong(path, fibers.lines[begin], "fiber", reason)
 
 
-def _mat(fibers: _Fibers, plan: tuple[float, float] | None, thickness: float | None, periodic: bool, path: Path) -> Mat:
+def _mat(
+    fibers: _Fibers,
+    plan: tuple[float, float] | None,
+    thickness: float | None,
+    periodic: bool,
+    path: Path,
+    cut: bool,
+    progress: Progress,
+) -> Mat:
     nodes: Floats = np.array(fibers.nodes)
-    radius = np.array(fibers.radius)
     first = np.array([*fibers.first, len(nodes)])
+    radius = _volume_radius(nodes, first, np.array(fibers.radius), progress)
     around = np.repeat(radius, np.diff(first))
     if plan is None:
         nodes[:, :2] -= nodes[:, :2].min(axis=0)
@@ -254,13 +266,38 @@ def _mat(fibers: _Fibers, plan: tuple[float, float] | None, thickness: float | N
         if size[axis] <= 0:
             raise CaseError(f"{path}: the slab has no extent along {name}; state # plan: and # thickness:")
         outside = np.flatnonzero((nodes[:, axis] < 0) | (nodes[:, axis] > size[axis]))
-        if len(outside) and (name == "z" or not periodic):
-            value = f"{nodes[outside[0], axis] * _PER_METER:g} um lies outside 0 to {size[axis] * _PER_METER:g} um"
+        if len(outside) and (name == "z" or not periodic) and not cut:
+            value = (
+                f"{in_micrometers(float(nodes[outside[0], axis]))} um lies outside 0 to {in_micrometers(size[axis])} um"
+            )
             more = f", and so do {len(outside) - 1} more points" if len(outside) > 1 else ""
-            raise _wrong(path, fibers.lines[outside[0]], name, value + more)
-    return Mat(
-        nodes, first, radius, Box((0.0, 0.0, 0.0), size), seed=-1, origin=f"read from {path.name}", periodic=periodic
-    )
+            raise _wrong(path, fibers.lines[outside[0]], name, f'{value}{more}; mat.outside = "cut" cuts them there')
+    slab, origin = Box((0.0, 0.0, 0.0), size), f"read from {path.name}"
+    if cut:
+        whole = len(radius)
+        nodes, first, owner = cut_to(slab, nodes, first)
+        if len(owner) == 0:
+            raise CaseError(f"{path}: none of the {whole} fibers has its axis within the slab of {size} m")
+        radius, kept = radius[owner], len(np.unique(owner))
+        origin += f", cut at the slab: {len(owner)} pieces of {kept} of its {whole} fibers lie within"
+        progress(f"cut at the slab: {len(owner)} pieces of {kept} of {whole} fibers lie within")
+    return Mat(nodes, first, radius, slab, seed=-1, origin=origin, periodic=periodic)
+
+
+def _volume_radius(nodes: Floats, first: Ints, radius: Floats, progress: Progress) -> Floats:
+    """Give each fiber the radius with which its cylinders have the volume of the cones between its points."""
+    length = np.linalg.norm(np.diff(nodes, axis=0), axis=1)
+    # no cone leads from one fiber to the next
+    length[first[1:-1] - 1] = 0.0
+    before, after = radius[:-1], radius[1:]
+    cones = length * (before**2 + before * after + after**2) / 3.0
+    mean = np.sqrt(np.add.reduceat(cones, first[:-1]) / np.add.reduceat(length, first[:-1]))
+    lowest, highest = np.minimum.reduceat(radius, first[:-1]), np.maximum.reduceat(radius, first[:-1])
+    varied = lowest < highest
+    if varied.any():
+        most = float((highest / lowest).max() - 1.0)
+        progress(f"{int(varied.sum())} fibers vary in radius, by up to {most:.0%}: each gets the one of its volume")
+    return np.where(varied, mean, lowest)
 
 
 def _wrong(path: Path, line: int, column: str, reason: str) -> CaseError:

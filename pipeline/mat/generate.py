@@ -51,7 +51,7 @@ def generate(
         case FileSettings():
             from pipeline.mat.exchange import read_fibers
 
-            return read_fibers(settings.file, settings.side, settings.periodic)
+            return read_fibers(settings.file, settings.side, settings.periodic, settings.outside, progress)
     # numba takes half a second to load, which a case file's reader need not wait for
     from pipeline.mat.grow import grow
 

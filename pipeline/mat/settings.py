@@ -463,6 +463,11 @@ class FileSettings(_Settings):
         "or the smallest rectangle around the center lines.",
     )
     periodic: bool | None = Field(default=None, description="Whether the plan wraps; unless given, as the file says.")
+    outside: Literal["refuse", "cut"] = Field(
+        default="refuse",
+        description="What becomes of axes that leave the slab, as those of a tomogram's window do: an error, or they "
+        "are cut where they leave it.",
+    )
 
 
 _GENERATORS: dict[str, type[BaseModel]] = {

@@ -5,6 +5,8 @@ A mesher inserts every triangle it is given; those a thousand times longer than 
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 from numba import njit
@@ -230,7 +232,7 @@ def _flip(points: Floats, triangles: Ints, label: Ints, sides: Ints, least: Floa
 def _cube(points: Floats, triangles: Ints, edge: float) -> float:
     """Size of cubes as large as a usual triangle, but no more than about eight of them per triangle."""
     extent = np.maximum(np.ptp(points[triangles].reshape(-1, 3), axis=0), edge)
-    return max(edge, float(np.prod(extent) / (8.0 * len(triangles))) ** (1.0 / 3.0))
+    return max(edge, math.cbrt(float(np.prod(extent)) / (8.0 * len(triangles))))
 
 
 def _near(points: Floats, triangles: Ints, edge: float, pad: float) -> Near:
@@ -343,7 +345,8 @@ def _short_edges(points: Floats, triangles: Ints, short: Floats) -> Ints:
     pairs = pairs[pairs[:, 0] < pairs[:, 1]]
     length = np.linalg.norm(points[pairs[:, 0]] - points[pairs[:, 1]], axis=1)
     chosen = length < np.minimum(short[pairs[:, 0]], short[pairs[:, 1]])
-    return pairs[chosen][np.argsort(length[chosen], kind="stable")]
+    ordered: Ints = pairs[chosen][np.argsort(length[chosen], kind="stable")]
+    return ordered
 
 
 @njit(cache=True)  # type: ignore[untyped-decorator]

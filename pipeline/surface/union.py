@@ -66,8 +66,8 @@ def _refuse_cuts(points: Floats, triangles: Ints, fiber: Ints) -> None:
         place = ", ".join(f"{1e6 * coordinate:.4g}" for coordinate in points[triangles[cut[0]]].mean(axis=0))
         names = ", ".join(str(name) for name in np.unique(fiber[cut])[:5].tolist())
         raise StageError(
-            f"{len(cut)} of {len(triangles)} triangles of the united surface cut another one, first at ({place}) um, of "
-            f"fibers {names}; set surface.smallest_edge = 0, or other surface.sides"
+            f"{len(cut)} of {len(triangles)} triangles of the united surface cut another one, first at ({place}) um, "
+            f"of fibers {names}; set surface.smallest_edge = 0, or other surface.sides"
         )
 
 

@@ -14,7 +14,8 @@ def tangle(kind: str, rng: np.random.Generator) -> Floats:
     )
     turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
     line = (line - line.mean(axis=0)) @ turn.T
-    return 5.0 + line * min(1.0, 4.0 / float(np.abs(line).max()))
+    placed: Floats = 5.0 + line * min(1.0, 4.0 / float(np.abs(line).max()))
+    return placed
 
 
 def _coil(rng: np.random.Generator) -> Floats:
