@@ -4,9 +4,10 @@ CASE   ?= cases/default.toml
 VENV   := .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
+COUNT  ?= 200
 
 .DEFAULT_GOAL := help
-.PHONY: help setup case test test-slow check bench verify docs clean
+.PHONY: help setup case test test-slow fuzz check bench verify docs clean
 
 help:  ## Say what there is
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-10s %s\n", $$1, $$2}'
@@ -30,6 +31,10 @@ test: setup  ## Run the tests (those that need OpenFOAM are skipped where it is 
 
 test-slow: setup  ## Run the tests that take minutes
 	$(BIN)/pytest -m slow --timeout 3600
+
+fuzz: setup  ## Draw COUNT inputs for each reader of strangers' files, and kill COUNT runs at random (hours at 2000)
+	$(BIN)/python -m tests.security.fuzz $(COUNT)
+	$(BIN)/python -m tests.processes.kills $(COUNT)
 
 check: setup  ## Style, types, imports, and the examples in the documentation
 	$(BIN)/ruff format --check .

@@ -6,16 +6,16 @@ A pipe or a device in the place of a file would keep a reader waiting, or fed, f
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import errno
+import io
 import os
 import stat
 from pathlib import Path
-from typing import BinaryIO
 
 _WORDS = {stat.S_IFIFO: "a pipe", stat.S_IFCHR: "a device", stat.S_IFBLK: "a device", stat.S_IFSOCK: "a socket"}
 _LINK = "a link"
 
 
-def open_file(path: Path, links: bool = True) -> BinaryIO:
+def open_file(path: Path, links: bool = True) -> io.BufferedReader:
     """Open a file for reading.
 
     Parameters

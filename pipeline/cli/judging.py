@@ -15,8 +15,9 @@ from pipeline.cli.listen import listening
 from pipeline.cli.printable import printable
 from pipeline.cli.tables import plain_table
 from pipeline.export.read import mesh_files, read_mesh
+from pipeline.line.places import disk_trouble_explained
 from pipeline.line.run import CASE, Run
-from pipeline.line.store import disk_trouble_explained, file_digest
+from pipeline.line.store import file_digest
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.quality import QualityReport
 from pipeline.progress import Progress

@@ -15,7 +15,7 @@ from pipeline.analytics.options import read_options
 from pipeline.analytics.settings import FilterSettings, FlowSettings
 from pipeline.analytics.tables.rows import prediction_tables
 from pipeline.cli.tables import plain_table
-from pipeline.line.store import disk_trouble_explained
+from pipeline.line.places import disk_trouble_explained
 
 
 def predict_filter(source: Path | None, given: Mapping[str, str], as_json: bool, plot: Path | None) -> None:

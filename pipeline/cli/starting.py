@@ -12,7 +12,7 @@ from pydantic import BaseModel
 from pipeline.case import Case
 from pipeline.cli.describe import Key, keys, summary
 from pipeline.errors import CaseError, StageError
-from pipeline.line.store import disk_trouble_explained
+from pipeline.line.places import disk_trouble_explained
 from pipeline.mat.settings import ArraySettings, BoxSettings, FileSettings, LayeredSettings, Stop
 
 _WIDTH = 110

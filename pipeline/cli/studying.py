@@ -10,7 +10,7 @@ from rich.console import Console
 from pipeline.cli.listen import listening
 from pipeline.cli.tables import plain_table
 from pipeline.errors import CaseError, StageError
-from pipeline.line.store import disk_trouble_explained
+from pipeline.line.places import disk_trouble_explained, own_file
 from pipeline.study.settings import Study, read_study
 from pipeline.study.study import StudyResult, carry_out_study
 from pipeline.study.tables import FAILURES, shown, write_tables
@@ -53,14 +53,15 @@ def _drawn(study: Study, result: StudyResult, folder: Path, plot: Path | None) -
         from pipeline.analytics.tables.plots import save_figure
         from pipeline.study.plot import plot_study
 
-        save_figure(plot_study(result), plot or folder / PLOT)
-        written.append(plot or folder / PLOT)
+        plot = plot or own_file(folder / PLOT)
+        save_figure(plot_study(result), plot)
+        written.append(plot)
     left_out = frozenset(number for number, point in enumerate(result.points) if point.runs[0].error)
     if study.picture and len(left_out) < len(result.points):
         from pipeline.study.pictures import draw_points
 
-        draw_points(study, folder / PICTURES, left_out)
-        written.append(folder / PICTURES)
+        written.append(own_file(folder / PICTURES))
+        draw_points(study, written[-1], left_out)
     return written
 
 

@@ -8,8 +8,8 @@ from rich.console import Console
 
 from pipeline.cli.listen import listening
 from pipeline.errors import CaseError, StageError
+from pipeline.line.places import disk_trouble_explained, own_file, own_folder
 from pipeline.line.run import Run, report
-from pipeline.line.store import disk_trouble_explained
 from pipeline.nouns.fibers import Mat
 from pipeline.report.stage import PAGE
 from pipeline.report.views.painter import possible
@@ -49,7 +49,9 @@ def view_run(folder: Path, scene: str | None, screenshot: Path | None) -> None:
         _draw(subject, {wanted: screenshot}, kind)
     elif screenless():
         names = (scene,) if scene else there
-        _draw(subject, {name: folder / PICTURES / f"{name}.png" for name in names}, "png")
+        with disk_trouble_explained(folder):
+            files = {name: own_file(own_folder(folder / PICTURES) / f"{name}.png") for name in names}
+        _draw(subject, files, "png")
     else:
         show(subject, there, scene, f"fibertwin: {folder}")
 

@@ -8,11 +8,11 @@ from typing import Any
 
 from pipeline.line import store
 from pipeline.line.code import code_of, libraries_of
+from pipeline.line.manifest import damaged, read_manifest
 from pipeline.line.results import Results
 from pipeline.line.stage import Stage, giver
 
 NO_RESULT = "no result yet"
-_PARTS = ("parameters", "sources", "inputs", "code", "libraries", "counts")
 _SHOWN = 3  # files of the program, or settings, that one reason names
 _LONGEST = 60  # characters of a value that is quoted
 
@@ -95,8 +95,8 @@ def reasons(stage: Stage, results: Results) -> tuple[str, ...]:
         ``numba 0.60 -> 0.61``, ``no result yet``.
     """
     folder = results.folder / stage.name
-    manifest = store.read_manifest(folder)
-    if manifest is None or not _whole(manifest):
+    manifest = read_manifest(folder)
+    if manifest is None:
         return (NO_RESULT if not folder.exists() else "its manifest is missing or damaged",)
     now = identity(stage, results)
     found = [
@@ -105,17 +105,11 @@ def reasons(stage: Stage, results: Results) -> tuple[str, ...]:
         *_files(manifest["inputs"], now["inputs"]),
         *_files(manifest["code"], now["code"]),
         *_versions(manifest["libraries"], now["libraries"]),
-        *(f"{stage.name}/{name} is not as it was left" for name in store.damaged(folder, manifest)),
+        *(f"{stage.name}/{name} is not as it was left" for name in damaged(folder, manifest)),
     ]
     if not found and manifest["key"] != store.digest(now):
         found.append("its manifest is damaged")
     return tuple(found)
-
-
-def _whole(manifest: dict[str, Any]) -> bool:
-    return all(isinstance(manifest.get(part), dict) for part in _PARTS) and isinstance(
-        manifest.get("seconds"), int | float
-    )
 
 
 def _settings(before: Any, now: Any) -> Iterator[str]:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from pipeline.errors import StageError
 from pipeline.line import store
+from pipeline.line.manifest import read_manifest
+from pipeline.line.places import MANIFEST
 from pipeline.line.stage import Stage, giver
 
 if TYPE_CHECKING:
@@ -71,7 +73,7 @@ class Results:
         if noun in self.loaded:
             return self.loaded[noun]  # type: ignore[return-value]
         stage = next((stage for stage in self.line if noun in stage.gives), None)
-        if stage is None or stage.name in self.left_out or not (self.folder / stage.name / store.MANIFEST).is_file():
+        if stage is None or stage.name in self.left_out or not (self.folder / stage.name / MANIFEST).is_file():
             return None
         return self.read(noun) if self.path(noun).exists() else None
 
@@ -89,7 +91,7 @@ class Results:
         """Tell what made a finished stage; None where it is not there or its manifest is damaged."""
         if stage in self.made:
             return self.made[stage]
-        return store.read_manifest(self.folder / stage)
+        return read_manifest(self.folder / stage)
 
     def manifests(self) -> dict[str, dict[str, Any]]:
         """Tell what made each stage that is there and of this case, in the order of the line."""

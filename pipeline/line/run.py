@@ -10,16 +10,16 @@ from typing import Any
 
 from pipeline.case import Case
 from pipeline.errors import StageError
-from pipeline.line import store
+from pipeline.line import places, store
+from pipeline.line.manifest import read_manifest, write_manifest
 from pipeline.line.reasons import NO_RESULT, identity, of_this_case, reasons
 from pipeline.line.results import Results
 from pipeline.line.stage import Counts, Estimate, Stage, giver
 from pipeline.line.stages import LINE
+from pipeline.line.store import CASE
 from pipeline.machine import peak_memory
 from pipeline.progress import Progress, silent
 
-CASE = "case.json"
-"""File of a run's folder that holds its case, every setting in SI."""
 STAGES = tuple(stage.name for stage in LINE)
 LAST = [stage.name for stage in LINE if not stage.asked][-1]
 """Where a run ends that nobody asked more of."""
@@ -142,7 +142,7 @@ def run(
     stages = [stage for stage in wanted(case, until) if stage.name not in without]
     _refuse_obstacles(stages, case, folder)
     outcomes = []
-    with store.locked(folder):
+    with places.locked(folder):
         store.write_json(folder / CASE, case.content())
         for stage in stages:
             outcomes.append(_step(stage, case, folder, stage.name in force, progress))
@@ -209,7 +209,7 @@ def report(folder: Path, progress: Progress = silent) -> Path:
         If the folder is no run or cannot be written.
     """
     case = Run.opened(folder).case
-    with store.locked(folder):
+    with places.locked(folder):
         return _step(LINE[-1], case, folder, True, progress).folder
 
 
@@ -247,7 +247,9 @@ def _step(stage: Stage, case: Case, folder: Path, again: bool, progress: Progres
     place = folder / stage.name
     why = (FORCED,) if again else reasons(stage, results)
     if not why:
-        done: dict[str, Any] = store.read_manifest(place) or {}
+        done: dict[str, Any] = read_manifest(place) or {}
+        # of a run that was killed between its result and its end
+        places.remove(places.kept_folder(folder, stage.name))
         progress(f"{stage.name}: reused", 1.0)
         return Outcome(stage.name, place, "reused", float(done["seconds"]), done["counts"])
     obstacle = stage.obstacle(results) if stage.obstacle is not None else None
@@ -255,13 +257,13 @@ def _step(stage: Stage, case: Case, folder: Path, again: bool, progress: Progres
         return Outcome(stage.name, place, "skipped", 0.0, {"reason": obstacle})
     progress(f"{stage.name}: {'; '.join(why)}", 0.0)
     began = time.perf_counter()
-    with store.side_folder(place) as side:
+    with places.side_folder(place) as side:
         depends_on = identity(stage, results)
         counts: Counts = stage.make(results, side, progress)
         seconds = time.perf_counter() - began
         made = {"stage": stage.name, "key": store.digest(depends_on), "why": why, **depends_on}
         cost = {"seconds": seconds, "peak_memory": peak_memory()}
-        store.write_manifest(side, {**made, **cost, "counts": counts}, stage.records)
+        write_manifest(side, {**made, **cost, "counts": counts}, stage.records)
     return Outcome(stage.name, place, "made", seconds, counts, why)
 
 

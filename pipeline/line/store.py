@@ -1,38 +1,40 @@
-"""Stage results on disk: saved whole or not at all, and reused while what made them is unchanged.
+"""Nouns on disk: arrays as `.npz`, the rest as JSON, written so that their bytes depend on their content alone.
 
-A stage's folder holds its files and `manifest.json`, which says what made them. A stage writes into a side folder
-that is renamed when it is complete, so a killed run leaves finished stages only.
+Reading takes no file at its word: sizes, types and shapes are held against what is there before room is made for them.
 """
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-import contextlib
 import dataclasses
-import errno
 import hashlib
 import json
+import math
 import os
-import shutil
+import struct
+import tokenize
 import typing
 import zipfile
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
-from pipeline import machine
 from pipeline.errors import StageError
-from pipeline.geometry.box import Box
+from pipeline.line.places import write_text
+from pipeline.reading import open_file, read_bytes
 
 T = TypeVar("T")
-MANIFEST = "manifest.json"
-_PARTS = ("files", "records")
-# What no change of the case can mend, only the user: the disk and its permissions.
-_DISK_TROUBLE = {
-    errno.ENOSPC, errno.EACCES, errno.EPERM, errno.EROFS, errno.EDQUOT, errno.ENOTDIR, errno.EFBIG, errno.EEXIST,
-    errno.EISDIR, errno.ENAMETOOLONG,
-}  # fmt: skip
+CASE = "case.json"
+"""File of a run's folder that holds its case, every setting in SI."""
+
+_LARGEST_JSON = 500_000_000  # bytes; the measures of a million fibers take a fifth of that
+_LONGEST_REASON = 2000  # characters of what a library says about a damaged file
+# what numpy, zipfile, json, pydantic and the nouns raise at content that is not what `save` or `write_json` wrote
+_DAMAGE = (
+    ArithmeticError, EOFError, LookupError, MemoryError, OSError, RuntimeError, TypeError, ValueError, struct.error,
+    tokenize.TokenError, zipfile.BadZipFile,
+)  # fmt: skip
 
 
 def digest(content: object) -> str:
@@ -42,13 +44,13 @@ def digest(content: object) -> str:
 
 def file_digest(path: Path) -> str:
     """SHA-256 of a file's bytes."""
-    with path.open("rb") as file:
+    with open_file(path) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def write_json(path: Path, content: object) -> None:
-    """Write JSON that people can read; numbers keep every digit."""
-    path.write_text(json.dumps(content, indent=2, allow_nan=False, default=_plain) + "\n", encoding="utf-8")
+    """Write JSON that people can read, whole or not at all; numbers keep every digit."""
+    write_text(path, json.dumps(content, indent=2, allow_nan=False, default=_plain) + "\n")
 
 
 def _plain(thing: object) -> object:
@@ -62,8 +64,23 @@ def _plain(thing: object) -> object:
 
 
 def read_json(path: Path) -> Any:
-    """Read JSON that a stage wrote."""
-    return json.loads(path.read_text(encoding="utf-8"))
+    """Read JSON that a stage wrote; not a number and infinity, which none writes, are refused as damage is.
+
+    Raises
+    ------
+    OSError, ValueError, RecursionError
+        If the file is not there, is a link, or is damaged.
+    """
+    return json.loads(read_bytes(path, _LARGEST_JSON, links=False), parse_constant=_refused, parse_float=_finite)
+
+
+def _refused(text: str) -> float:
+    raise ValueError(f"{text} is no number")
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    return value if math.isfinite(value) else _refused(text)
 
 
 def load_json(kind: type[T], path: Path) -> T:
@@ -74,13 +91,21 @@ def load_json(kind: type[T], path: Path) -> T:
     StageError
         If the file is not there or holds something else.
     """
-    from pydantic import TypeAdapter, ValidationError
+    from pydantic import TypeAdapter
 
     try:
-        return TypeAdapter(kind).validate_json(path.read_bytes())
-    except (OSError, ValidationError) as problem:
-        advice = f"run the stage again with --force {path.parent.name}"
-        raise StageError(f"cannot read {path}: {problem}; {advice}") from problem
+        read_json(path)
+        return TypeAdapter(kind).validate_json(read_bytes(path, _LARGEST_JSON, links=False))
+    except _DAMAGE as problem:
+        raise _unreadable(path, problem) from problem
+
+
+def _unreadable(path: Path, problem: Exception) -> StageError:
+    reason = problem.strerror if isinstance(problem, OSError) and problem.strerror else str(problem)
+    if len(reason) > _LONGEST_REASON:
+        reason = f"{reason[:_LONGEST_REASON]} ..."
+    advice = f"run the stage again with --force {path.parent.name}" if path.name != CASE else "make the run again"
+    return StageError(f"cannot read {path}: {reason or type(problem).__name__}; {advice}")
 
 
 def save(thing: object, path: Path) -> None:
@@ -97,15 +122,17 @@ def save(thing: object, path: Path) -> None:
         elif _holds_arrays(type(value)):
             arrays |= {f"{item.name}.{part.name}": getattr(value, part.name) for part in dataclasses.fields(value)}
         else:
-            rest[item.name] = {"lower": value.lower, "upper": value.upper} if isinstance(value, Box) else value
+            rest[item.name] = value
     np.savez(path, **arrays, rest=np.array(json.dumps(rest, sort_keys=True, default=_plain)))
 
 
 def _holds_arrays(kind: object) -> bool:
     """Whether this is a dataclass of arrays only."""
-    return dataclasses.is_dataclass(kind) and all(
-        typing.get_origin(item.type) is np.ndarray for item in dataclasses.fields(kind)
-    )
+    return dataclasses.is_dataclass(kind) and all(_is_array(item.type) for item in dataclasses.fields(kind))
+
+
+def _is_array(kind: object) -> bool:
+    return typing.get_origin(kind) is np.ndarray
 
 
 def load(kind: type[T], path: Path) -> T:
@@ -117,139 +144,71 @@ def load(kind: type[T], path: Path) -> T:
         If the file is not there or is damaged.
     """
     try:
-        with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
-            values: dict[str, Any] = {name: file[name] for name in file.files if name != "rest"}
-            values |= json.loads(str(file["rest"]))
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as problem:
-        advice = f"run the stage again with --force {path.parent.name}"
-        raise StageError(f"cannot read {path}: {problem}; {advice}") from problem
+        found = read_arrays(path)
+        rest = json.loads(str(found.pop("rest")), parse_constant=_refused, parse_float=_finite)
+        return _made(kind, found, rest)
+    except _DAMAGE as problem:
+        raise _unreadable(path, problem) from problem
+
+
+def _made(kind: type[T], found: dict[str, Any], rest: dict[str, Any]) -> T:
+    from pydantic import TypeAdapter
+
+    types = typing.get_type_hints(kind)
+    values: dict[str, Any] = {}
     for item in dataclasses.fields(kind):  # type: ignore[arg-type]
-        if _holds_arrays(item.type):
-            prefix = f"{item.name}."
-            parts = {name.removeprefix(prefix): values.pop(name) for name in list(values) if name.startswith(prefix)}
-            values[item.name] = item.type(**parts)  # type: ignore[operator]
-        elif item.type in (Box, "Box"):
-            corners = values[item.name]
-            values[item.name] = Box(tuple(corners["lower"]), tuple(corners["upper"]))
-        elif isinstance(values.get(item.name), list):
-            entry = typing.get_args(item.type)[0]
-            values[item.name] = tuple(entry(**each) if isinstance(each, dict) else each for each in values[item.name])
+        expected = types[item.name]
+        if _is_array(expected):
+            values[item.name] = _of_type(found.pop(item.name), expected, item.name)
+        elif _holds_arrays(expected):
+            parts = {
+                part.name: _of_type(found.pop(f"{item.name}.{part.name}"), part.type, item.name)
+                for part in dataclasses.fields(expected)
+            }
+            values[item.name] = expected(**parts)
+        else:
+            values[item.name] = TypeAdapter(expected).validate_python(rest.pop(item.name))
+    if found or rest:
+        raise ValueError(f"it holds {', '.join([*found, *rest])} too")
     return kind(**values)
 
 
-def read_manifest(stage: Path) -> dict[str, Any] | None:
-    """Give what made a stage; None where its manifest is missing, damaged, or of a program that wrote others."""
-    try:
-        manifest: dict[str, Any] = read_json(stage / MANIFEST)
-        whole = all(isinstance(manifest[part], dict) for part in _PARTS) and isinstance(manifest["key"], str)
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        return None
-    return manifest if whole else None
+def _of_type(array: npt.NDArray[Any], expected: Any, name: str) -> npt.NDArray[Any]:
+    kind = np.dtype(typing.get_args(typing.get_args(expected)[1])[0])
+    if array.dtype != kind:
+        raise ValueError(f"{name} holds {array.dtype}, not {kind}")
+    return array
 
 
-def damaged(stage: Path, manifest: dict[str, Any]) -> list[str]:
-    """Name the files of a stage's result that are not as it left them."""
-    return [name for name, content in manifest["files"].items() if _digest_or_none(stage / name) != content]
+def read_arrays(path: Path) -> dict[str, npt.NDArray[Any]]:
+    """Read the arrays of an `.npz` that numpy wrote uncompressed, and no more than the file has bytes.
 
-
-def _digest_or_none(path: Path) -> str | None:
-    try:
-        return file_digest(path) if path.is_file() else None
-    except OSError:
-        return None
-
-
-def finished(stage: Path, key: str) -> dict[str, Any] | None:
-    """Give the manifest of a stage if it was made by just this `key` and all its files are as it left them."""
-    manifest = read_manifest(stage)
-    if manifest is None or manifest["key"] != key or damaged(stage, manifest):
-        return None
-    return manifest
-
-
-@contextlib.contextmanager
-def side_folder(stage: Path) -> Iterator[Path]:
-    """Give an empty folder to write a stage into; it takes the stage's place only if the block succeeds.
+    numpy's own reader makes room for what a header says before it looks whether that is there.
 
     Raises
     ------
-    StageError
-        If the disk is full or may not be written.
+    OSError, ValueError, RuntimeError, zipfile.BadZipFile and others
+        If the file is not there, is a link, or is damaged.
     """
-    side = stage.with_name(f".{stage.name}.partial")
-    old = stage.with_name(f".{stage.name}.old")
-    with disk_trouble_explained(stage):
-        shutil.rmtree(side, ignore_errors=True)
-        side.mkdir(parents=True)
-        try:
-            yield side
-            shutil.rmtree(old, ignore_errors=True)
-            if stage.exists():
-                stage.rename(old)
-            side.rename(stage)
-        except BaseException:
-            shutil.rmtree(side, ignore_errors=True)
-            raise
-        shutil.rmtree(old, ignore_errors=True)
+    with open_file(path, links=False) as raw, zipfile.ZipFile(raw) as archive:
+        entries = archive.infolist()
+        if sum(entry.file_size for entry in entries) > os.fstat(raw.fileno()).st_size:
+            raise ValueError("it claims to hold more than the file has")
+        return {entry.filename.removesuffix(".npy"): _read_array(archive, entry) for entry in entries}
 
 
-@contextlib.contextmanager
-def disk_trouble_explained(place: Path) -> Iterator[None]:
-    """Turn a full disk or a missing permission into an error that says so."""
-    try:
-        yield
-    except OSError as problem:
-        if problem.errno not in _DISK_TROUBLE:
-            raise
-        blocked = problem.errno in (errno.EEXIST, errno.ENOTDIR)
-        reason = "a file stands where a folder should" if blocked else os.strerror(problem.errno or 0).lower()
-        raise StageError(
-            f"cannot write {problem.filename or place}: {reason}; "
-            "nothing half-written was kept; free space, or choose another place"
-        ) from problem
-
-
-@contextlib.contextmanager
-def locked(folder: Path) -> Iterator[None]:
-    """Hold a run folder for this process alone.
-
-    Raises
-    ------
-    StageError
-        If another process is running in the folder, or the folder cannot be written.
-    """
-    try:
-        if folder.exists() and not folder.is_dir():
-            raise StageError(f"{folder} is a file; choose another folder with --out")
-        folder.mkdir(parents=True, exist_ok=True)
-        lock = (folder / ".lock").open("w")
-    except OSError as problem:
-        raise StageError(
-            f"cannot write {problem.filename or folder}: {os.strerror(problem.errno or 0).lower()}; "
-            "choose another folder with --out"
-        ) from problem
-    with lock, disk_trouble_explained(folder):
-        try:
-            # the system lets go of it when the process ends, however it ends
-            machine.lock(lock)
-        except BlockingIOError:
-            raise StageError(f"another run is writing {folder}; wait for it, or choose another --out") from None
-        yield
-
-
-def write_manifest(stage: Path, content: dict[str, Any], records: tuple[str, ...] = ()) -> None:
-    """Close a stage's side folder with what made it and the digest of each of its files.
-
-    Parameters
-    ----------
-    stage : Path
-    content : dict
-    records : tuple of str
-        Patterns of the files that are no part of the result.
-    """
-    paths = sorted(path.relative_to(stage) for path in stage.rglob("*") if path.is_file())
-    digests = {path.as_posix(): file_digest(stage / path) for path in paths}
-    kept = {name for name, path in zip(digests, paths, strict=True) if any(path.match(each) for each in records)}
-    files = {name: digest for name, digest in digests.items() if name not in kept}
-    written = {name: digest for name, digest in digests.items() if name in kept}
-    write_json(stage / MANIFEST, {**content, "files": files, "records": written})
+def _read_array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> npt.NDArray[Any]:
+    with archive.open(entry) as file:
+        version = np.lib.format.read_magic(file)
+        reader = {
+            (1, 0): np.lib.format.read_array_header_1_0,
+            (2, 0): np.lib.format.read_array_header_2_0,
+        }[version]
+        shape, by_columns, kind = reader(file)
+        if kind.hasobject:
+            raise ValueError(f"{entry.filename} holds objects of Python, which are never read")
+        # to the end, where the archive's own sum over the content is checked
+        content = file.read()
+    if min(shape, default=0) < 0 or math.prod(shape) * kind.itemsize != len(content):
+        raise ValueError(f"{entry.filename} is not as long as its header says")
+    return np.frombuffer(content, kind).reshape(shape, order="F" if by_columns else "C")

@@ -3,6 +3,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import math
+import os
+import shutil
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,6 +12,7 @@ from typing import TYPE_CHECKING
 from pipeline.analytics.formulas.slip import knudsen, slip_length
 from pipeline.analytics.models.pressure_models import pressure_model
 from pipeline.line import store
+from pipeline.line.places import kept_folder
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.exports import OpenFoamCase
 from pipeline.nouns.fibers import Mat
@@ -21,9 +24,6 @@ if TYPE_CHECKING:
     from pipeline.line.results import Results
     from pipeline.line.stage import Counts
 
-SOLVING = ".solving"
-"""Folder of a run that holds a solver's run until it has settled."""
-
 
 def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     """Solve the flow."""
@@ -31,7 +31,7 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     model = pressure_model(results.case.flow.pressure_model)
     kn = knudsen(flow.mean_free_path, comparison.fiber_diameter)
     # beside the stage and not in it: a killed run continues from there
-    work = results.folder / SOLVING
+    work = kept_folder(results.folder, "solve")
     bed = Bed(
         face_area=mat.slab.face_area,
         thickness=mat.thickness,
@@ -41,13 +41,22 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     solution = solve(results.read(OpenFoamCase).folder, work, flow, bed, results.case.solve, progress)
     store.write_json(into / "solution.json", solution)
     store.write_json(into / "comparison.json", {**asdict(comparison), "cfd": solution.pressure_drop})
-    work.rename(into / "openfoam")
+    # not moved: should this process be killed before the stage stands, the solver's run stays where it can go on
+    shutil.copytree(work, into / "openfoam", copy_function=_linked)
     return {
         "pressure_drop": solution.pressure_drop,
         "iterations": solution.iterations,
         "converged": solution.converged,
         "force_balance_error": solution.force_balance_error,
     }
+
+
+def _linked(source: str, target: str) -> None:
+    try:
+        os.link(source, target)
+    except OSError:
+        # not every disk has files of two names
+        shutil.copy2(source, target)
 
 
 def _parallel_length(results: "Results", mat: Mat, comparison: Comparison) -> float | None:

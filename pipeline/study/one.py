@@ -7,7 +7,9 @@ import shutil
 
 from pipeline.analytics.models.prediction import filter_of_mat, predict
 from pipeline.errors import CaseError
-from pipeline.line import store
+from pipeline.line import places, store
+from pipeline.line.manifest import write_manifest
+from pipeline.line.places import MANIFEST
 from pipeline.line.run import Run, run
 from pipeline.nouns.fibers import Mat
 from pipeline.study.plan import Task
@@ -28,12 +30,12 @@ def carry_out(task: Task) -> Results:
     """
     outcomes = run(task.case, task.work, task.until)
     # a stage that was skipped has nothing to tell
-    finished = [outcome for outcome in outcomes if (outcome.folder / store.MANIFEST).exists()]
+    finished = [outcome for outcome in outcomes if (outcome.folder / MANIFEST).exists()]
     results: Results = {outcome.stage: stage_results(outcome.folder) for outcome in finished}
     results[PREDICTED] = _predicted(task)
-    with store.side_folder(task.result) as side:
+    with places.side_folder(task.result) as side:
         store.write_json(side / RESULT, results)
-        store.write_manifest(side, {"key": task.key, "set": task.overrides, "until": task.until})
+        write_manifest(side, {"key": task.key, "set": task.overrides, "until": task.until})
     if not task.keep:
         shutil.rmtree(task.work, ignore_errors=True)
     return read_result(task)

@@ -10,6 +10,7 @@ from typing import Any
 from pipeline.case import Case, read_case
 from pipeline.errors import CaseError
 from pipeline.line import store
+from pipeline.line.manifest import finished
 from pipeline.line.run import program_of, wanted
 from pipeline.mat.settings import ArraySettings, FileSettings
 from pipeline.study.settings import Study
@@ -61,7 +62,7 @@ class Task:
     @property
     def done(self) -> bool:
         """Whether its result is there and still holds."""
-        return store.finished(self.result, self.key) is not None and (not self.keep or self.work.is_dir())
+        return finished(self.result, self.key) is not None and (not self.keep or self.work.is_dir())
 
 
 def plan(study: Study, folder: Path) -> list[Task]:

@@ -10,6 +10,7 @@ from typing import Any
 
 from pipeline.errors import CaseError
 from pipeline.line import store
+from pipeline.line.places import MANIFEST
 from pipeline.units import parse
 
 NO_ANSWER = "no_answer"
@@ -117,9 +118,9 @@ def _table(place: Any) -> dict[str, Any]:
 
 def stage_results(folder: Path) -> Results:
     """Gather the numbers of a finished stage's folder."""
-    manifest = store.read_json(folder / store.MANIFEST)
+    manifest = store.read_json(folder / MANIFEST)
     results: Results = {**manifest["counts"], "seconds": manifest["seconds"]}
     for path in sorted(folder.glob("*.json")):
-        if path.name != store.MANIFEST:
+        if path.name != MANIFEST:
             results |= store.read_json(path)
     return results

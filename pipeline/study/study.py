@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.errors import CaseError, FibertwinError
-from pipeline.line import store
+from pipeline.line import places
 from pipeline.progress import Progress, silent
 from pipeline.study.one import read_result
 from pipeline.study.plan import Task, plan
@@ -109,7 +109,7 @@ def carry_out_study(
     """
     tasks = plan(study, folder)
     errors: dict[str, str] = {}
-    with store.locked(folder):
+    with places.locked(folder):
         todo = [task for task in tasks if not task.done]
         kept = len(tasks) - len(todo)
         asked = _Asked(study.quantities)

@@ -8,6 +8,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+from pipeline.line.places import write_text
 from pipeline.study.settings import toml_value
 from pipeline.study.study import StudyResult
 
@@ -24,13 +25,13 @@ def write_tables(result: StudyResult, folder: Path) -> list[Path]:
     -------
     list of Path
     """
-    (folder / RUNS).write_text(runs_csv(result), encoding="utf-8")
-    (folder / SUMMARY).write_text(summary_csv(result), encoding="utf-8")
+    write_text(folder / RUNS, runs_csv(result))
+    write_text(folder / SUMMARY, summary_csv(result))
     written = [folder / RUNS, folder / SUMMARY]
     failures = folder / FAILURES
     failures.unlink(missing_ok=True)
     if result.failed:
-        failures.write_text(failures_text(result), encoding="utf-8")
+        write_text(failures, failures_text(result))
         written.append(failures)
     return written
 

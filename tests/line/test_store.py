@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from pipeline.errors import StageError
-from pipeline.line import store
+from pipeline.line import places, store
+from pipeline.line.manifest import finished, write_manifest
+from pipeline.line.places import MANIFEST
 from pipeline.nouns.fibers import Mat
 from tests.surface.mats import CROSSING
 
@@ -42,14 +44,14 @@ def test_pickles_are_not_opened(tmp_path: Path) -> None:
 
 
 def write_and_fail(stage: Path, problem: BaseException) -> None:
-    with store.side_folder(stage) as side:
+    with places.side_folder(stage) as side:
         (side / "a").write_text("cut short")
         raise problem
 
 
 def test_a_stage_takes_its_place_only_when_it_is_whole(tmp_path: Path) -> None:
     stage = tmp_path / "mat"
-    with store.side_folder(stage) as side:
+    with places.side_folder(stage) as side:
         (side / "a").write_text("first")
     with pytest.raises(KeyboardInterrupt):
         write_and_fail(stage, KeyboardInterrupt())
@@ -64,17 +66,17 @@ def test_a_full_disk_is_a_clear_error_and_leaves_nothing(tmp_path: Path) -> None
 
 
 def test_other_trouble_with_files_keeps_its_traceback(tmp_path: Path) -> None:
-    with pytest.raises(FileNotFoundError), store.side_folder(tmp_path / "mat"):
+    with pytest.raises(FileNotFoundError), places.side_folder(tmp_path / "mat"):
         (tmp_path / "missing").read_text()
 
 
 @pytest.mark.parametrize("harm", ["change", "remove", "other key", "no manifest"])
 def test_a_result_is_reused_only_while_it_is_what_was_made(tmp_path: Path, harm: str) -> None:
     stage = tmp_path / "mat"
-    with store.side_folder(stage) as side:
+    with places.side_folder(stage) as side:
         (side / "a").write_text("content")
-        store.write_manifest(side, {"key": "k", "seconds": 1.0, "counts": {}})
-    assert store.finished(stage, "k") is not None
+        write_manifest(side, {"key": "k", "seconds": 1.0, "counts": {}})
+    assert finished(stage, "k") is not None
     key = "k"
     if harm == "change":
         (stage / "a").write_text("changed")
@@ -83,8 +85,8 @@ def test_a_result_is_reused_only_while_it_is_what_was_made(tmp_path: Path, harm:
     elif harm == "other key":
         key = "another"
     else:
-        (stage / store.MANIFEST).write_text("{ not json")
-    assert store.finished(stage, key) is None
+        (stage / MANIFEST).write_text("{ not json")
+    assert finished(stage, key) is None
 
 
 def test_the_digest_of_settings_does_not_depend_on_their_order() -> None:
@@ -93,8 +95,10 @@ def test_the_digest_of_settings_does_not_depend_on_their_order() -> None:
 
 
 def test_one_folder_takes_one_run_at_a_time(tmp_path: Path) -> None:
-    script = "import sys, pathlib; from pipeline.line import store; store.locked(pathlib.Path(sys.argv[1])).__enter__()"
-    with store.locked(tmp_path):
+    script = (
+        "import sys, pathlib; from pipeline.line import places; places.locked(pathlib.Path(sys.argv[1])).__enter__()"
+    )
+    with places.locked(tmp_path):
         other = subprocess.run(
             [sys.executable, "-c", script, str(tmp_path)], capture_output=True, text=True, check=False
         )
@@ -105,11 +109,11 @@ def test_one_folder_takes_one_run_at_a_time(tmp_path: Path) -> None:
 
 def test_a_file_in_the_folders_place_is_refused(tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("")
-    with pytest.raises(StageError, match="is a file"), store.locked(tmp_path / "taken"):
+    with pytest.raises(StageError, match="is a file"), places.locked(tmp_path / "taken"):
         pass
-    with pytest.raises(StageError, match="cannot write"), store.locked(tmp_path / ("x" * 300)):
+    with pytest.raises(StageError, match="cannot write"), places.locked(tmp_path / ("x" * 300)):
         pass
-    with pytest.raises(StageError, match="cannot write"), store.locked(tmp_path / "taken" / "run"):
+    with pytest.raises(StageError, match="cannot write"), places.locked(tmp_path / "taken" / "run"):
         pass
 
 

@@ -7,6 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tests.security.inputs import TARGETS
+from tests.security.run_folders import TARGETS as RUN_FOLDERS
 
 
 @pytest.mark.parametrize("name", TARGETS)
@@ -14,3 +15,10 @@ from tests.security.inputs import TARGETS
 @given(data=st.data())
 def test_only_a_result_or_our_own_error_comes_out(name: str, data: st.DataObject) -> None:
     TARGETS[name](data)
+
+
+@pytest.mark.parametrize("name", RUN_FOLDERS)
+@settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck))
+@given(data=st.data())
+def test_a_run_in_a_broken_folder_gives_the_same_results_or_our_own_error(name: str, data: st.DataObject) -> None:
+    RUN_FOLDERS[name](data)

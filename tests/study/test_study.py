@@ -169,7 +169,7 @@ def test_a_wrong_measure_keeps_the_runs_that_were_made(study: Study, here: list[
 
 
 def test_two_studies_do_not_share_a_folder_at_once(study: Study, tmp_path: Path) -> None:
-    from pipeline.line.store import locked
+    from pipeline.line.places import locked
 
     with locked(tmp_path / "out"), pytest.raises(StageError, match="another run"):
         carry_out_study(study, tmp_path / "out")
