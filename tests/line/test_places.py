@@ -26,14 +26,19 @@ def content(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-OBSTACLES: dict[str, Callable[[Path, Path], None]] = {
+def folder_with_links(place: Path, outside: Path) -> None:
+    place.mkdir()
+    (place / "in").symlink_to(outside)
+
+
+OBSTACLES: dict[str, Callable[[Path, Path], object]] = {
     "a link to a folder": lambda place, outside: place.symlink_to(outside),
     "a link to a file": lambda place, outside: place.symlink_to(outside / "thesis"),
     "a link to nothing": lambda place, outside: place.symlink_to(outside / "nothing"),
     "a link to itself": lambda place, outside: place.symlink_to(place),
     "a file": lambda place, outside: place.write_text("in the way"),
     "a pipe": lambda place, outside: os.mkfifo(place),
-    "a folder with links": lambda place, outside: (place.mkdir(), (place / "in").symlink_to(outside))[1],
+    "a folder with links": folder_with_links,
 }
 PLACES = (".lock", "mat", ".mat.partial", ".mat.old", ".mat.kept", "case.json", ".case.json.new")
 

@@ -106,7 +106,7 @@ def odd_arrays(draw: st.DataObject) -> None:
     kind, content = nouns()[name]
     source, path = folder() / f"source-{name}", folder() / f"odd-{name}"
     source.write_bytes(content)
-    arrays = dict(store.read_arrays(source))
+    arrays: dict[str, Any] = dict(store.read_arrays(source))
     for _ in range(draw.draw(st.integers(1, 2))):
         hit = draw.draw(st.sampled_from(sorted(arrays)))
         if hit == "rest":
