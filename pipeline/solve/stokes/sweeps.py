@@ -1,0 +1,73 @@
+"""Products with the matrices of a flow, and smoothing: loops over compressed rows, three components at once.
+
+Compiled by numba: imported only where a flow is solved.
+"""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+import numpy as np
+import numpy.typing as npt
+
+from pipeline.geometry.compiled import compiled
+from pipeline.nouns.arrays import Floats, Ints
+
+Indices = npt.NDArray[np.int32]
+Flags = npt.NDArray[np.uint8]
+
+
+@compiled
+def times(start: Ints, column: Indices, values: Floats, x: Floats, y: Floats) -> None:
+    """Matrix of numbers times (n, 3) vectors, into y."""
+    for row in range(len(start) - 1):
+        a, b, c = 0.0, 0.0, 0.0
+        for place in range(start[row], start[row + 1]):
+            value, j = values[place], column[place]
+            a += value * x[j, 0]
+            b += value * x[j, 1]
+            c += value * x[j, 2]
+        y[row, 0], y[row, 1], y[row, 2] = a, b, c
+
+
+@compiled
+def divergence(start: Ints, column: Indices, values: Floats, x: Floats, y: Floats) -> None:
+    """Matrix of (k, 3) entries times an (n, 3) vector, into y of one number per row."""
+    for row in range(len(start) - 1):
+        total = 0.0
+        for place in range(start[row], start[row + 1]):
+            j = column[place]
+            total += values[place, 0] * x[j, 0] + values[place, 1] * x[j, 1] + values[place, 2] * x[j, 2]
+        y[row] = total
+
+
+@compiled
+def add_gradient(start: Ints, column: Indices, values: Floats, p: Floats, y: Floats) -> None:
+    """Add the transposed of `divergence`'s matrix times p to y."""
+    for row in range(len(start) - 1):
+        value = p[row]
+        for place in range(start[row], start[row + 1]):
+            j = column[place]
+            y[j, 0] += values[place, 0] * value
+            y[j, 1] += values[place, 1] * value
+            y[j, 2] += values[place, 2] * value
+
+
+@compiled
+def sweep(
+    start: Ints, column: Indices, values: Floats, over: Floats, fixed: Flags, right: Floats, x: Floats, backward: bool
+) -> None:
+    """One Gauss-Seidel sweep of each component in place; `over` is one over the diagonal, what is fixed stays."""
+    rows = len(start) - 1
+    for step in range(rows):
+        row = rows - 1 - step if backward else step
+        a, b, c = right[row, 0], right[row, 1], right[row, 2]
+        for place in range(start[row], start[row + 1]):
+            value, j = values[place], column[place]
+            a -= value * x[j, 0]
+            b -= value * x[j, 1]
+            c -= value * x[j, 2]
+        if not fixed[row, 0]:
+            x[row, 0] += over[row] * a
+        if not fixed[row, 1]:
+            x[row, 1] += over[row] * b
+        if not fixed[row, 2]:
+            x[row, 2] += over[row] * c

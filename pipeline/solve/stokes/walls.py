@@ -1,0 +1,170 @@
+"""The walls of a quadratic mesh on the true fibers: vertices and the middles of edges moved, and their true normals."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from pipeline.geometry.tets import volumes
+from pipeline.nouns.arrays import Floats, Ints
+from pipeline.nouns.fibers import Pieces
+from pipeline.solve.stokes.elements import rule, shape
+from pipeline.solve.stokes.nodes import Nodes
+
+_STEP = 0.35  # of the lattice that finds the nearest fiber, in mean fiber diameters
+_REACH = 1.5  # mean fiber diameters; no wall is that far from every fiber
+_LEASH = 0.3  # how far a node may move, in lengths of its shortest edge
+_THINNEST = 0.2  # of a straight cell's volume: the least that a node's move, or a curved cell's Jacobian, may leave
+_ON_FIBER = 1e-3  # mean fiber diameters; a node nearer than this lies on its fiber
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Walls:
+    """Where the nodes of a mesh are once its walls follow the fibers.
+
+    Parameters
+    ----------
+    positions : (nodes, 3) array
+    curved : (m,) bool array
+        Which tetrahedra have a curved edge.
+    wall : (w,) int array
+        Nodes on the walls.
+    fiber : (w,) int array
+        Fiber that each is nearest to.
+    normal : (w, 3) array
+        Out of the air, of the true fiber where a node lies on one; zero elsewhere.
+    radius : (w,) array
+        Of the fiber.
+    axis : (w, 3) array
+        Its direction.
+    straight : int
+        Edges on the walls that stay straight, since a cell would turn inside out or no fiber is near.
+    edges : int
+        Edges on the walls.
+    """
+
+    positions: Floats
+    curved: npt.NDArray[np.bool_]
+    wall: Ints
+    fiber: Ints
+    normal: Floats
+    radius: Floats
+    axis: Floats
+    straight: int
+    edges: int
+
+
+def curve_walls(
+    points: Floats, nodes: Nodes, faces: Ints, pieces: Pieces, radius: Floats, lower: Floats, upper: Floats
+) -> Walls:
+    """Move the walls of a mesh onto the fibers, wherever every cell keeps a positive Jacobian.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Of the straight mesh, in mean fiber diameters from the duct's lower corner.
+    nodes : Nodes
+    faces : (b, 3) int array
+        Triangles of the fibers' patch.
+    pieces : Pieces
+        The fibers, in the same unit.
+    radius : (fibers,) array
+    lower, upper : (3,) arrays
+        The duct: what lies on one of its planes stays on it.
+
+    Returns
+    -------
+    Walls
+    """
+    # numba takes half a second to load
+    from pipeline.geometry.fibers import FiberDistance
+
+    counts = np.maximum(1, np.ceil((upper - lower) / _STEP)).astype(int).tolist()
+    distance = FiberDistance.about(
+        pieces.start, pieces.end, radius[pieces.fiber], pieces.flat, lower, upper, tuple(counts), _REACH
+    )
+    free = ~(np.isclose(points, lower, atol=1e-7) | np.isclose(points, upper, atol=1e-7))
+    length = np.linalg.norm(points[nodes.ends[:, 0]] - points[nodes.ends[:, 1]], axis=1)
+    corners = np.unique(faces)
+    moved = _moved_vertices(points, nodes, corners, distance.snapped, free, length)
+    edge = np.unique(nodes.of_triangles(faces)[:, 3:]) - nodes.vertices
+    middle = nodes.middles(moved)
+    ends = nodes.ends[edge]
+    bent, done = distance.snapped(
+        middle[edge], (free[ends[:, 0]] | free[ends[:, 1]]).astype(np.float64), _LEASH * float(length.max())
+    )
+    near = np.linalg.norm(bent - middle[edge], axis=1) <= _LEASH * length[edge]
+    offset = np.zeros_like(middle)
+    offset[edge] = np.where((done & near)[:, None], bent - middle[edge], 0.0)
+    offset, curved = _straightened(moved, nodes, middle, offset)
+    positions = np.concatenate([moved, middle + offset])
+    wall = np.concatenate([corners, nodes.vertices + edge])
+    fiber, normal, axis = _true_normals(positions[wall], distance.with_piece, distance.source, pieces, radius)
+    is_bent = (offset[edge] != 0.0).any(axis=1) | (np.abs(distance.at(middle[edge])) < _ON_FIBER)
+    return Walls(
+        positions, curved, wall, fiber, normal, radius[fiber], axis, int((~is_bent).sum()), len(edge)
+    )
+
+
+def _moved_vertices(points, nodes, corners, snapped, free, length) -> Floats:  # type: ignore[no-untyped-def]
+    shortest = np.full(nodes.vertices, np.inf)
+    for end in nodes.ends.T:
+        np.minimum.at(shortest, end, length)
+    onto, done = snapped(points[corners], free[corners].astype(np.float64), _LEASH * float(length.max()))
+    near = done & (np.linalg.norm(onto - points[corners], axis=1) <= _LEASH * shortest[corners])
+    tets, before = nodes.cells[:, :4], volumes(points, nodes.cells[:, :4])
+    moved = points.copy()
+    moved[corners[near]] = onto[near]
+    while True:
+        thin = volumes(moved, tets) < _THINNEST * before
+        if not thin.any():
+            return moved
+        back = np.unique(tets[thin])
+        moved[back] = points[back]
+
+
+def _straightened(points: Floats, nodes: Nodes, middle: Floats, offset: Floats) -> tuple[Floats, npt.NDArray[np.bool_]]:
+    """Take the bend out of the edges of cells that would turn inside out, until none does."""
+    edges = nodes.cells[:, 4:] - nodes.vertices
+    corners = np.concatenate([np.eye(4), rule(True)[0], nodes_of_reference()])
+    slopes = shape(corners)[1]
+    straight = 6.0 * volumes(points, nodes.cells[:, :4])
+    while True:
+        bent = (offset != 0.0).any(axis=1)
+        cells = np.flatnonzero(bent[edges].any(axis=1))
+        at = np.concatenate([points, middle + offset])[nodes.cells[cells]]
+        jacobian = np.linalg.det(np.einsum("cka,qkb->cqab", at, slopes))
+        bad = cells[(jacobian < _THINNEST * straight[cells, None]).any(axis=1)]
+        if not len(bad):
+            curved = np.zeros(len(nodes.cells), bool)
+            curved[cells] = True
+            return offset, curved
+        offset = offset.copy()
+        offset[edges[bad]] = 0.0
+
+
+def nodes_of_reference() -> Floats:
+    """Barycentric coordinates of the middles of a tetrahedron's edges, (6, 4) array."""
+    from pipeline.solve.stokes.nodes import EDGES
+
+    middle: Floats = 0.5 * (np.eye(4)[EDGES[:, 0]] + np.eye(4)[EDGES[:, 1]])
+    return middle
+
+
+def _true_normals(at, with_piece, source, pieces, radius):  # type: ignore[no-untyped-def]
+    off, found = with_piece(at)
+    piece = source[np.maximum(found, 0)]
+    start, line = pieces.start[piece], pieces.end[piece] - pieces.start[piece]
+    length = np.linalg.norm(line, axis=1)
+    axis = line / length[:, None]
+    along = np.einsum("ij,ij->i", at - start, axis)
+    inward = start + np.clip(along, 0.0, length)[:, None] * axis - at
+    size = np.linalg.norm(inward, axis=1)
+    flat = np.where(along < 0.0, pieces.flat[piece, 0], pieces.flat[piece, 1])
+    on = (found >= 0) & (np.abs(off) < _ON_FIBER) & (np.abs(size - radius[pieces.fiber[piece]]) < _ON_FIBER)
+    beyond = (along < 0.0) | (along > length)
+    on &= ~(beyond & flat)
+    normal = np.where(on[:, None], inward / np.maximum(size, 1e-300)[:, None], 0.0)
+    return pieces.fiber[piece], normal, axis
