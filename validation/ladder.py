@@ -17,7 +17,7 @@ from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.progress import Progress, silent
 from validation.convergence import Convergence, convergence
 from validation.exact import hexagonal_drag, square_drag
-from validation.rows import row_drags
+from validation.rows import drags_of_fibers, row_drags
 
 SOLIDITIES = (0.01, 0.05, 0.1, 0.2, 0.3)
 FACTORS = (1.5, 1.0, 1 / 1.5)
@@ -112,8 +112,9 @@ def rung_case(case: Case, solidity: float, factor: float, slip: float = 0.0) -> 
     }
     if slip:
         path = slip * 0.5 * mat.fiber_diameter / SLIP_COEFFICIENT
-        changes["flow"] = case.flow.model_copy(update={"mean_free_path": path})
-        changes["export"] = case.export.model_copy(update={"fiber_wall": "slip"})
+        changes["flow"] = case.flow.model_copy(update={"mean_free_path": path, "fiber_wall": "slip"})
+    else:
+        changes["flow"] = case.flow.model_copy(update={"fiber_wall": "no_slip"})
     return case.model_copy(update=changes)
 
 
@@ -131,10 +132,13 @@ def climb(case: Case, folder: Path, tell: Progress = silent) -> Rung:
     this = Run(case, folder)
     solution, measures = this.read(Solution), this.read(TetmeshMeasures)
     length = this.read(Mat).slab.size[1]
-    drags = row_drags(folder / "solve" / "openfoam", mat.rows, flow)
+    if solution.engine == "openfoam":
+        drags = row_drags(folder / "solve" / "openfoam", mat.rows, flow)
+    else:
+        drags = drags_of_fibers(this.read(Mat), solution.drag_per_fiber, mat.rows)
     stars = [drag / (length * flow.viscosity * flow.face_velocity) for drag in drags]
     slip = SLIP_COEFFICIENT * flow.mean_free_path / (0.5 * mat.fiber_diameter)
-    slip = slip if case.export.fiber_wall == "slip" else 0.0
+    slip = slip if case.flow.fiber_wall == "slip" else 0.0
     exact = _EXACT[mat.arrangement](mat.solidity, slip)
     return Rung(
         arrangement=mat.arrangement,

@@ -10,9 +10,13 @@ k = 2 pi over the pitch, so two rows away it is some 1e-4 of the drag: the middl
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from pipeline.errors import StageError
+from pipeline.nouns.fibers import Mat
 from pipeline.nouns.flow import Flow
 from pipeline.nouns.patches import FIBERS
 from pipeline.openfoam.environment import environment
@@ -52,6 +56,13 @@ def row_drags(solved: Path, rows: int, flow: Flow) -> tuple[float, ...]:
         if done.returncode or not found:
             raise StageError(f"the drag on each row of {solved} cannot be read:\n{done.stdout[-800:]}{done.stderr}")
         return drags_of_bins(found[-1].read_text(encoding="ascii"), rows)
+
+
+def drags_of_fibers(mat: Mat, drags: Sequence[float], rows: int) -> tuple[float, ...]:
+    """Sum the drag [N] of the fibers of each of an array's rows, from the inlet to the outlet."""
+    height = mat.nodes[mat.first[:-1], 2]
+    row = np.floor(height / mat.thickness * rows).astype(np.int64)
+    return tuple(np.bincount(row, drags, rows).tolist())
 
 
 def drags_of_bins(text: str, rows: int) -> tuple[float, ...]:

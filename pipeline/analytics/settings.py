@@ -2,7 +2,7 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-from typing import Self
+from typing import Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -14,6 +14,8 @@ from pipeline.units import Density, Fraction, Length, PositiveRatio, Pressure, T
 
 INCOMPRESSIBLE = 0.3
 """Mach number below which air's density changes by less than 5 %, as the equations of every stage take for granted."""
+
+FiberWall = Literal["slip", "no_slip"]
 
 
 class FlowSettings(BaseModel):
@@ -35,6 +37,11 @@ class FlowSettings(BaseModel):
     mean_free_path: Length | None = Field(
         default=None,
         description="mean free path of the air; 65.3 nm at 293 K and 1 atm, scaled by Willeke's law, unless given",
+    )
+    fiber_wall: FiberWall = Field(
+        default="slip",
+        description="what the air does on the fibers, for every solver and exported case: slip by the length that "
+        "belongs to its mean free path, or stand still (right above a fiber diameter of about 10 um)",
     )
     particle_diameter: Length = Field(default=300e-9, description="particle size for which efficiencies are told")
     particle_density: Density = Field(default=1000.0, description="density of the particles")

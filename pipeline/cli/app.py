@@ -92,7 +92,8 @@ def solve(
     run
         The folder of a run; stages that it lacks are made first.
     set_
-        Override a key of solve: ``--set solve.cores=2`` or ``--set solve.max_iterations=5000``. May be repeated.
+        Override a key of solve: ``--set solve.stokes.tolerance=1e-5`` or ``--set solve.engine=openfoam``.
+        May be repeated.
     again
         Solve again even if the solution still holds.
     as_json

@@ -50,5 +50,9 @@ def _changed(case: Case, overrides: tuple[str, ...]) -> Case:
             raise CaseError(
                 f"--set {text}: only keys of solve can be changed for a run that is there; fibertwin run makes another"
             )
-    typed = validate_as(_Changes, override({"solve": {}}, overrides), "--set").solve.model_dump(exclude_unset=True)
-    return case.model_copy(update={"solve": case.solve.model_copy(update=typed)})
+    typed = validate_as(_Changes, override({"solve": {"engine": case.solve.engine}}, overrides), "--set").solve
+    if typed.engine == case.solve.engine:
+        # what the case file says of this solver holds beside what is set here
+        own, changed = getattr(case.solve, typed.engine), getattr(typed, typed.engine).model_dump(exclude_unset=True)
+        typed = typed.model_copy(update={typed.engine: own.model_copy(update=changed)})
+    return case.model_copy(update={"solve": typed})

@@ -24,7 +24,7 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     shown = results.get(CellFields) if "vtk" in case.export.formats else None
     flow = case.flow.flow()
     slip = None
-    if case.export.fiber_wall == "slip":
+    if case.flow.fiber_wall == "slip":
         slip = FiberSlip(SLIP_COEFFICIENT * flow.mean_free_path, fiber_radius(mesh, results.read(FluidDomain)))
     fields = shown.by_name() if shown is not None else {}
     written = export(mesh, into, case.export, flow, case.enclosure.sides, progress, fields, slip)

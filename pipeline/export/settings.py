@@ -4,7 +4,7 @@
 
 from typing import TYPE_CHECKING, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, field_validator
+from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
 from pipeline.export.formats.registry import WRITTEN, why_not
 from pipeline.openfoam.foam_file import Encoding
@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 else:
     Format = Literal[tuple(WRITTEN)]
 Dialect = Literal["com", "org"]
-FiberWall = Literal["no_slip", "slip"]
 
 
 class ExportSettings(BaseModel):
@@ -31,11 +30,13 @@ class ExportSettings(BaseModel):
     dialect: Dialect = Field(
         default="com", description="Whose OpenFOAM the case is written for: OpenFOAM.com or OpenFOAM.org."
     )
-    fiber_wall: FiberWall = Field(
-        default="no_slip",
-        description="What the air does on the fibers: stand still, or slip by the length that belongs to its mean "
-        "free path (needed where a fiber is thinner than about 10 um).",
-    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _wall_belongs_to_the_flow(cls, content: object) -> object:
+        if isinstance(content, dict) and "fiber_wall" in content:
+            raise ValueError("fiber_wall belongs to the flow now, for every solver: write flow.fiber_wall")
+        return content
 
     @field_validator("formats", mode="before")
     @classmethod

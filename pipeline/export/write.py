@@ -44,7 +44,7 @@ def export(
     fields : mapping of name to (cells,) array, optional
         Shown on the cells by VTK.
     slip : FiberSlip, optional
-        How far the air slips along the fibers; needed just where ``settings.fiber_wall`` is ``"slip"``.
+        How far the air slips along the fibers; it stands still on them without.
 
     Returns
     -------

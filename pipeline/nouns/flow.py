@@ -61,6 +61,26 @@ class Solution:
         Diameter for which the model the user chose gives this pressure drop at the mesh's solidity.
     f_star : float [-], optional
         For an array of parallel cylinders: drag per length of fiber over viscosity x face velocity.
+    engine : str
+        Solver that found it, as ``solve.engine`` names it.
+    fiber_wall : str
+        What the air does on the fibers: ``slip`` or ``no_slip``.
+    pressure_drop_error : float [-], optional
+        Of the iterations, relative; the mesh's own is not in it.
+    pressure_drop_no_slip, pressure_drop_slip : float [Pa], optional
+        With either wall; None where that was not solved.
+    other_wall : str, optional
+        How the drop with the other wall was found.
+    drag_per_fiber : tuple of float [N]
+        Along the flow, in the order of ``mat/fibers.csv``; empty where the engine does not tell.
+    reynolds : float [-], optional
+        Face velocity x mean fiber diameter x density over viscosity.
+    knudsen : float [-], optional
+        Mean free path over mean fiber radius.
+    regime : str, optional
+        Flow regime that it belongs to.
+    wall_edges, straight_wall_edges : int, optional
+        Edges of the mesh on fibers, and those of them that are not curved onto the true fibers.
     """
 
     pressure_drop: float
@@ -75,3 +95,15 @@ class Solution:
     cores: int
     effective_fiber_diameter: float | None = None
     f_star: float | None = None
+    engine: str = "openfoam"
+    fiber_wall: str = "no_slip"
+    pressure_drop_error: float | None = None
+    pressure_drop_no_slip: float | None = None
+    pressure_drop_slip: float | None = None
+    other_wall: str | None = None
+    drag_per_fiber: tuple[float, ...] = ()
+    reynolds: float | None = None
+    knudsen: float | None = None
+    regime: str | None = None
+    wall_edges: int | None = None
+    straight_wall_edges: int | None = None

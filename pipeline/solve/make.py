@@ -5,20 +5,24 @@
 import math
 import os
 import shutil
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pipeline.analytics.formulas.slip import knudsen, slip_length
+from pipeline.analytics.formulas.slip import knudsen, regime, slip_length
 from pipeline.analytics.models.pressure_models import pressure_model
 from pipeline.line import store
 from pipeline.line.places import kept_folder
 from pipeline.nouns.comparison import Comparison
+from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.exports import OpenFoamCase
 from pipeline.nouns.fibers import Mat
+from pipeline.nouns.flow import Solution
+from pipeline.nouns.mesh import FaceMesh
 from pipeline.openfoam.environment import SOLVER, openfoam_missing
 from pipeline.progress import Progress
-from pipeline.solve.running import Bed, solve
+from pipeline.solve.bed import Bed
+from pipeline.solve.running import solve
 
 if TYPE_CHECKING:
     from pipeline.line.results import Results
@@ -30,25 +34,62 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     mat, flow, comparison = results.read(Mat), results.case.flow.flow(), results.read(Comparison)
     model = pressure_model(results.case.flow.pressure_model)
     kn = knudsen(flow.mean_free_path, comparison.fiber_diameter)
-    # beside the stage and not in it: a killed run continues from there
-    work = kept_folder(results.folder, "solve")
     bed = Bed(
         face_area=mat.slab.face_area,
         thickness=mat.thickness,
         pressure_factor=float(model.coefficient(comparison.solidity["mesh"], slip_length(kn))),
         fiber_length=_parallel_length(results, mat, comparison),
     )
-    solution = solve(results.read(OpenFoamCase).folder, work, flow, bed, results.case.solve, progress)
+    engine = _by_openfoam if results.case.solve.engine == "openfoam" else _by_elements
+    solution = engine(results, into, bed, progress)
     store.write_json(into / "solution.json", solution)
     store.write_json(into / "comparison.json", {**asdict(comparison), "cfd": solution.pressure_drop})
-    # not moved: should this process be killed before the stage stands, the solver's run stays where it can go on
-    shutil.copytree(work, into / "openfoam", copy_function=_linked)
     return {
         "pressure_drop": solution.pressure_drop,
         "iterations": solution.iterations,
         "converged": solution.converged,
         "force_balance_error": solution.force_balance_error,
     }
+
+
+def _by_elements(results: "Results", into: Path, bed: Bed, progress: Progress) -> Solution:
+    from pipeline.solve.stokes.flow_file import write_flow
+    from pipeline.solve.stokes.solver import solve_stokes
+
+    case, flow = results.case, results.case.flow.flow()
+    solution, field = solve_stokes(
+        results.read(FaceMesh),
+        results.read(FluidDomain),
+        flow,
+        bed,
+        results.read(Comparison).solidity["mesh"],
+        case.flow.fiber_wall,
+        case.enclosure.sides,
+        case.solve.stokes,
+        progress,
+    )
+    store.save(field, into / "flow.npz")
+    write_flow(field, flow.viscosity, into / "flow.vtu")
+    return solution
+
+
+def _by_openfoam(results: "Results", into: Path, bed: Bed, progress: Progress) -> Solution:
+    case, flow = results.case, results.case.flow.flow()
+    # beside the stage and not in it: a killed run continues from there
+    work = kept_folder(results.folder, "solve")
+    solution = solve(results.read(OpenFoamCase).folder, work, flow, bed, case.solve.openfoam, progress)
+    # not moved: should this process be killed before the stage stands, the solver's run stays where it can go on
+    shutil.copytree(work, into / "openfoam", copy_function=_linked)
+    wall, kn = case.flow.fiber_wall, float(knudsen(flow.mean_free_path, results.read(Comparison).fiber_diameter))
+    return replace(
+        solution,
+        fiber_wall=wall,
+        pressure_drop_no_slip=solution.pressure_drop if wall == "no_slip" else None,
+        pressure_drop_slip=solution.pressure_drop if wall == "slip" else None,
+        reynolds=flow.density * flow.face_velocity * results.read(Comparison).fiber_diameter / flow.viscosity,
+        knudsen=kn,
+        regime=regime(kn),
+    )
 
 
 def _linked(source: str, target: str) -> None:
@@ -68,6 +109,8 @@ def _parallel_length(results: "Results", mat: Mat, comparison: Comparison) -> fl
 
 def obstacle(results: "Results") -> str | None:
     """Say what keeps the solver from running; None where nothing does."""
+    if results.case.solve.engine != "openfoam":
+        return None
     if "openfoam" not in results.case.export.formats:
-        return "export.formats lacks openfoam, the solver's format"
-    return openfoam_missing(results.case.solve.cores, SOLVER[results.case.export.dialect])
+        return "export.formats lacks openfoam, the format of solve.engine = openfoam"
+    return openfoam_missing(results.case.solve.openfoam.cores, SOLVER[results.case.export.dialect])

@@ -7,7 +7,6 @@ import math
 import re
 import shutil
 import time
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +19,8 @@ from pipeline.openfoam.environment import openfoam_missing
 from pipeline.openfoam.process import call, started, tail
 from pipeline.progress import Progress, silent
 from pipeline.solve import read_back
-from pipeline.solve.settings import SolveSettings
+from pipeline.solve.bed import Bed
+from pipeline.solve.settings import OpenFoamSettings
 from pipeline.solve.settled import change
 
 MASS_ERROR = 1e-5
@@ -31,35 +31,12 @@ _SAVES = 100  # iterations between two states that a killed run continues from
 _KEY, _SECONDS, _STOP = "fibertwin.key", "fibertwin.seconds", "stop"
 
 
-@dataclass(frozen=True, slots=True)
-class Bed:
-    """What the air goes through.
-
-    Parameters
-    ----------
-    face_area : float [m2]
-        Of the duct, across the flow.
-    thickness : float [m]
-        Of the mat.
-    pressure_factor : float [-], optional
-        f(solidity) of a model with ``pressure drop = f x viscosity x velocity x thickness / diameter^2``; gives
-        the effective fiber diameter.
-    fiber_length : float [m], optional
-        Of all fibers of an array of parallel ones; gives F*.
-    """
-
-    face_area: float
-    thickness: float
-    pressure_factor: float | None = None
-    fiber_length: float | None = None
-
-
 def solve(
     case: Path,
     work: Path,
     flow: Flow,
     bed: Bed,
-    settings: SolveSettings | None = None,
+    settings: OpenFoamSettings | None = None,
     progress: Progress = silent,
 ) -> Solution:
     """Run a case that `pipeline.export` wrote until its pressure drop has settled.
@@ -73,7 +50,7 @@ def solve(
     flow : Flow
         As the case was written with.
     bed : Bed
-    settings : SolveSettings
+    settings : OpenFoamSettings
     progress : Progress
         Told the iteration, the pressure drop and the residuals.
 
@@ -87,7 +64,7 @@ def solve(
     StageError
         If OpenFOAM is missing, cannot start, or the run diverges; with the end of its log.
     """
-    settings = settings or SolveSettings()
+    settings = settings or OpenFoamSettings()
     program = _application(case)
     missing = openfoam_missing(settings.cores, program)
     if missing:
@@ -107,7 +84,7 @@ def solve(
     return _solution(work, flow, bed, settled, seconds, settings.cores)
 
 
-def _prepare(case: Path, work: Path, settings: SolveSettings) -> None:
+def _prepare(case: Path, work: Path, settings: OpenFoamSettings) -> None:
     """Make `work` a copy of the case, split for the cores, unless a run of just this case was killed there."""
     key = _digest(case, settings.cores)
     key_file = work / _KEY
@@ -157,7 +134,7 @@ def _edit(path: Path, **entries: object) -> None:
     path.write_text(text, encoding="ascii")
 
 
-def _run(command: list[str], work: Path, flow: Flow, settings: SolveSettings, progress: Progress) -> bool:
+def _run(command: list[str], work: Path, flow: Flow, settings: OpenFoamSettings, progress: Progress) -> bool:
     """Run the solver until the pressure drop has settled, it ends, or the time is over; tell whether it has settled."""
     log = work / f"log.{_application(work)}"
     deadline = time.monotonic() + settings.time_limit
@@ -208,7 +185,7 @@ def _mass_error(work: Path) -> float:
     return float(-outlet[both - 1] / inlet[both - 1] - 1.0) if both else math.inf
 
 
-def _tell(progress: Progress, log: Path, drops: Floats, last: float, settings: SolveSettings) -> None:
+def _tell(progress: Progress, log: Path, drops: Floats, last: float, settings: OpenFoamSettings) -> None:
     found = read_back.residuals(tail(log, 60))
     told = ", ".join(f"{name} {value:.1e}" for name, value in sorted(found.items()))
     # the change falls from 1 to the tolerance, in even steps on a logarithmic scale
@@ -226,20 +203,17 @@ def _solution(work: Path, flow: Flow, bed: Bed, settled: bool, seconds: float, c
     # the third number of the force's first vector: along z
     drag = float(read_back.history(work, read_back.DRAG, 3)[-1, 1])
     flow_in = -float(read_back.history(work, read_back.FLOW_IN)[-1, 1])
-    law = flow.viscosity * flow.face_velocity * bed.thickness / drop
-    diameter = math.sqrt(bed.pressure_factor * law) if bed.pressure_factor is not None else None
-    f_star = drag / (bed.fiber_length * flow.viscosity * flow.face_velocity) if bed.fiber_length is not None else None
     return Solution(
         pressure_drop=drop,
         flow_rate=flow_in,
         drag=drag,
-        permeability=float(law),
+        permeability=bed.permeability(flow, drop),
         force_balance_error=float(drag / (drop * bed.face_area) - 1.0),
         mass_balance_error=_mass_error(work),
         iterations=int(drops[-1, 0]),
         converged=settled,
         seconds=seconds,
         cores=cores,
-        effective_fiber_diameter=diameter,
-        f_star=f_star,
+        effective_fiber_diameter=bed.effective_diameter(flow, drop),
+        f_star=bed.f_star(flow, drag),
     )

@@ -2,21 +2,33 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-from pipeline.line.stage import Entry, Stage, needing
+from typing import Any
+
+from pipeline.line.stage import Entry, Stage
 from pipeline.nouns.comparison import Comparison
+from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.exports import OpenFoamCase
 from pipeline.nouns.fibers import Mat
 from pipeline.nouns.flow import Solution
+from pipeline.nouns.flow_field import FlowField
+from pipeline.nouns.mesh import FaceMesh
 from pipeline.solve.settings import SolveSettings
+
+
+def _needs(case: Any) -> tuple[type, ...]:
+    if case.solve.engine == "openfoam":
+        return Mat, OpenFoamCase, Comparison
+    return Mat, FluidDomain, FaceMesh, Comparison
+
 
 SOLVE = Stage(
     name="solve",
     about="The run of the solver.",
     make=Entry("pipeline.solve.make:make"),
-    needs=needing(Mat, OpenFoamCase, Comparison),
-    gives={Solution: "solution.json"},
+    needs=_needs,
+    gives={Solution: "solution.json", FlowField: "flow.npz"},
     settings=SolveSettings,
-    reads=("flow", "mat"),
+    reads=("flow", "mat", "enclosure"),
     records=("log.*", "*/log.*"),
     units={"pressure_drop": "Pa", "force_balance_error": "%"},
     obstacle=Entry("pipeline.solve.make:obstacle"),

@@ -30,7 +30,7 @@ def solution_table(solution: Solution) -> Table:
         rows.append(("effective fiber diameter", length(solution.effective_fiber_diameter)))
     if solution.f_star is not None:
         rows.append(("drag per length F*", f"{solution.f_star:.5g}"))
-    settled = "settled" if solution.converged else "NOT settled: raise solve.max_iterations or solve.time_limit"
+    settled = "settled" if solution.converged else f"NOT settled: raise solve.{solution.engine}.max_iterations"
     rows += [
         ("iterations", f"{solution.iterations:,}, {settled}"),
         ("forces balance to", f"{abs(solution.force_balance_error):.2g}"),

@@ -17,13 +17,13 @@ from pipeline.export.settings import ExportSettings
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import TetMesh
 from pipeline.openfoam.read import read_openfoam
-from pipeline.solve.running import Bed, solve
-from pipeline.solve.settings import SolveSettings
+from pipeline.solve.bed import Bed
+from pipeline.solve.running import solve
+from pipeline.solve.settings import OpenFoamSettings
 from tests.openfoam import AIR, foam
 from tests.sample_meshes import NO_PIECES, cylinder, duct
 
 RADIUS = 0.7e-6
-SLIP = ExportSettings(fiber_wall="slip")
 
 
 def drag_of_a_row(slip: float, folder: Path) -> float:
@@ -31,9 +31,9 @@ def drag_of_a_row(slip: float, folder: Path) -> float:
     mesh = cylinder(0.1, RADIUS, around=12, outward=12)
     depth, side = mesh.points[:, 0].max(), np.ptp(mesh.points[:, 1])
     wall = FiberSlip(slip * RADIUS, RADIUS) if slip else None
-    write_openfoam(mesh, folder / "case", AIR, settings=SLIP if slip else None, slip=wall)
+    write_openfoam(mesh, folder / "case", AIR, slip=wall)
     bed = Bed(face_area=depth * side, thickness=side, fiber_length=depth)
-    found = solve(folder / "case", folder / "work", AIR, bed, SolveSettings(tolerance=1e-5))
+    found = solve(folder / "case", folder / "work", AIR, bed, OpenFoamSettings(tolerance=1e-5))
     assert abs(found.force_balance_error) < 1e-3
     assert found.f_star is not None
     return found.f_star
@@ -64,12 +64,9 @@ def test_the_slip_fraction_is_the_wall_distance_over_its_sum_with_the_slip_lengt
     assert curved == pytest.approx((1 / 16) / (1 / 16 + 0.15), rel=1e-6)
 
 
-def test_a_slip_without_its_setting_is_a_bug(tmp_path: Path) -> None:
-    mesh = duct().face_mesh()
-    with pytest.raises(ValueError, match="fiber_wall"):
-        write_openfoam(mesh, tmp_path, AIR, slip=FiberSlip(1e-8, 1e-6))
-    with pytest.raises(ValueError, match="fiber_wall"):
-        write_openfoam(mesh, tmp_path, AIR, settings=SLIP)
+def test_the_wall_belongs_to_the_flow_and_its_old_place_says_so() -> None:
+    with pytest.raises(ValueError, match=r"write flow\.fiber_wall"):
+        ExportSettings.model_validate({"fiber_wall": "slip"})
 
 
 def test_each_face_finds_its_fiber_s_radius() -> None:

@@ -24,6 +24,7 @@ from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.patches import FIBERS, PATCHES
 from pipeline.nouns.quality import QualityReport
+from pipeline.solve.settings import SolveSettings
 from tests.openfoam import figures, foam, patches
 
 SMOKE = Path(__file__).parents[2] / "cases" / "smoke.toml"
@@ -204,7 +205,8 @@ def test_the_written_case_converges_and_keeps_mass(smoke: Run, tmp_path: Path) -
 
 def test_without_openfoam_the_solver_is_skipped_with_the_reason(smoke: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "")
-    outcomes = run(smoke.case, smoke.folder, until="solve")
+    case = smoke.case.model_copy(update={"solve": SolveSettings(engine="openfoam")})
+    outcomes = run(case, smoke.folder, until="solve")
     skipped = next(outcome for outcome in outcomes if outcome.stage == "solve")
     assert skipped.how == "skipped"
     assert "OpenFOAM" in str(skipped.counts["reason"]) or "PATH" in str(skipped.counts["reason"])

@@ -11,8 +11,9 @@ from pipeline.errors import StageError
 from pipeline.export.formats.openfoam.case import write_openfoam
 from pipeline.pictures.flow import read_flow, slice_figure, streamline_figure
 from pipeline.pictures.panels import write_png
-from pipeline.solve.running import Bed, solve
-from pipeline.solve.settings import SolveSettings
+from pipeline.solve.bed import Bed
+from pipeline.solve.running import solve
+from pipeline.solve.settings import OpenFoamSettings
 from tests.openfoam import AIR
 from tests.sample_meshes import duct
 
@@ -31,7 +32,7 @@ def test_a_case_that_was_not_solved_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.openfoam
 def test_the_flow_comes_in_micrometers_pascals_and_meters_per_second(tmp_path: Path) -> None:
-    found = solve(written(tmp_path), tmp_path / "work", AIR, Bed(4e-12, 1e-6), SolveSettings())
+    found = solve(written(tmp_path), tmp_path / "work", AIR, Bed(4e-12, 1e-6), OpenFoamSettings())
     flow = read_flow(tmp_path / "work", AIR.density)
     assert flow.air.bounds == pytest.approx((0, 2, 0, 2, 0, 4), abs=1e-6)
     # the bar is two of eight cells wide and of sixteen long

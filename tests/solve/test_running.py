@@ -12,8 +12,9 @@ from pipeline.errors import StageError
 from pipeline.export.formats.openfoam.case import write_openfoam
 from pipeline.nouns.flow import Flow
 from pipeline.openfoam.environment import openfoam_missing
-from pipeline.solve.running import Bed, solve
-from pipeline.solve.settings import SolveSettings
+from pipeline.solve.bed import Bed
+from pipeline.solve.running import solve
+from pipeline.solve.settings import OpenFoamSettings
 from tests.openfoam import AIR
 from tests.sample_meshes import duct
 
@@ -55,7 +56,7 @@ def test_creeping_flow_scales_with_velocity_and_viscosity(tmp_path: Path) -> Non
     fast = replace(AIR, face_velocity=0.05, viscosity=3.6e-5)
     drops = [
         solve(
-            bar_case(tmp_path / name, flow, 6), tmp_path / f"{name}.work", flow, BED, SolveSettings(tolerance=1e-6)
+            bar_case(tmp_path / name, flow, 6), tmp_path / f"{name}.work", flow, BED, OpenFoamSettings(tolerance=1e-6)
         ).pressure_drop
         for name, flow in (("slow", AIR), ("fast", fast))
     ]
@@ -66,7 +67,8 @@ def test_creeping_flow_scales_with_velocity_and_viscosity(tmp_path: Path) -> Non
 def test_two_cores_give_the_same_pressure_drop(tmp_path: Path) -> None:
     case = bar_case(tmp_path / "case", cells=4)
     one, two = (
-        solve(case, tmp_path / f"work{cores}", AIR, BED, SolveSettings(cores=cores, tolerance=1e-5)) for cores in (1, 2)
+        solve(case, tmp_path / f"work{cores}", AIR, BED, OpenFoamSettings(cores=cores, tolerance=1e-5))
+        for cores in (1, 2)
     )
     # the multigrid of each part differs, and the solver itself stops at residuals of 1e-5
     assert two.pressure_drop == pytest.approx(one.pressure_drop, rel=1e-3)
@@ -76,13 +78,13 @@ def test_two_cores_give_the_same_pressure_drop(tmp_path: Path) -> None:
 @pytest.mark.openfoam
 def test_a_run_that_ends_early_says_so_and_is_continued(tmp_path: Path) -> None:
     case = bar_case(tmp_path / "case", cells=6)
-    early = solve(case, tmp_path / "work", AIR, BED, SolveSettings(max_iterations=25, window=20, tolerance=1e-6))
+    early = solve(case, tmp_path / "work", AIR, BED, OpenFoamSettings(max_iterations=25, window=20, tolerance=1e-6))
     assert not early.converged
     assert early.iterations == 25
-    whole = solve(case, tmp_path / "work", AIR, BED, SolveSettings(tolerance=1e-6))
+    whole = solve(case, tmp_path / "work", AIR, BED, OpenFoamSettings(tolerance=1e-6))
     assert whole.converged
     assert (tmp_path / "work/postProcessing/inletPressure/25").is_dir()
-    fresh = solve(case, tmp_path / "fresh", AIR, BED, SolveSettings(tolerance=1e-6))
+    fresh = solve(case, tmp_path / "fresh", AIR, BED, OpenFoamSettings(tolerance=1e-6))
     assert whole.pressure_drop == pytest.approx(fresh.pressure_drop, rel=1e-4)
 
 
@@ -93,9 +95,9 @@ def test_a_run_killed_at_once_leaves_no_solver_behind_and_goes_on(tmp_path: Path
     bar_case(tmp_path / "case", cells=10)
     program = (
         "from pathlib import Path; from pipeline.solve.running import solve; from tests.openfoam import AIR\n"
-        "from pipeline.solve.settings import SolveSettings; from tests.solve.test_running import BED\n"
+        "from pipeline.solve.settings import OpenFoamSettings; from tests.solve.test_running import BED\n"
         f"solve(Path({str(tmp_path / 'case')!r}), Path({str(tmp_path / 'work')!r}), AIR, BED,"
-        " SolveSettings(tolerance=1e-9))"
+        " OpenFoamSettings(tolerance=1e-9))"
     )
     victim = subprocess.Popen([sys.executable, "-c", program], stderr=subprocess.DEVNULL)
     deadline = time.monotonic() + 60
@@ -115,7 +117,7 @@ def test_a_run_killed_at_once_leaves_no_solver_behind_and_goes_on(tmp_path: Path
 
 @pytest.mark.openfoam
 def test_another_case_in_the_same_place_starts_over(tmp_path: Path) -> None:
-    settings = SolveSettings(max_iterations=5)
+    settings = OpenFoamSettings(max_iterations=5)
     solve(bar_case(tmp_path / "case", cells=4), tmp_path / "work", AIR, BED, settings)
     fast = replace(AIR, face_velocity=0.05)
     found = solve(bar_case(tmp_path / "case", fast, cells=4), tmp_path / "work", fast, BED, settings)
@@ -144,5 +146,5 @@ def test_without_openfoam_the_reason_and_the_cure_are_told(tmp_path: Path, monke
     assert "simpleFoam not found on the PATH; on Debian" in str(openfoam_missing())
     case = bar_case(tmp_path / "case", cells=4)
     with pytest.raises(StageError, match="decomposePar and mpirun"):
-        solve(case, tmp_path / "work", AIR, BED, SolveSettings(cores=2))
+        solve(case, tmp_path / "work", AIR, BED, OpenFoamSettings(cores=2))
     assert not (tmp_path / "work").exists()

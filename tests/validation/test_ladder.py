@@ -31,7 +31,7 @@ def test_every_case_of_the_ladder_is_valid_and_says_its_question(path: Path) -> 
 
 
 def test_a_rung_scales_every_length_of_the_mesh_and_the_polygon_the_other_way() -> None:
-    case = read_case(CASES / "square.toml")
+    case = read_case(CASES / "square.toml", ("tetmesh.engine=tetwild",))
     finer = rung_case(case, 0.05, 0.5)
     assert isinstance(finer.mat, ArraySettings)
     assert isinstance(case.mat, ArraySettings)
@@ -53,7 +53,7 @@ def test_narrow_gaps_make_the_mesh_finer() -> None:
 
 def test_slip_comes_from_the_mean_free_path() -> None:
     case = rung_case(read_case(CASES / "square.toml"), 0.1, 1.0, slip=0.1)
-    assert case.export.fiber_wall == "slip"
+    assert case.flow.fiber_wall == "slip"
     # 0.998 mean free paths are a tenth of the radius of 0.5 um
     assert 0.998 * case.flow.flow().mean_free_path == pytest.approx(0.05e-6)
 
@@ -104,12 +104,12 @@ def test_a_page_without_marks_is_an_error() -> None:
         filled("no place here", "ladder", "table")
 
 
-@pytest.mark.openfoam
-def test_a_coarse_rung_has_the_exact_drag_within_six_percent(tmp_path: Path) -> None:
-    # three cells per diameter leave 3 to 5 %, from below; docs/verification.md shows what finer meshes reach
-    rung = climb(rung_case(read_case(CASES / "square.toml"), 0.1, 1.5), tmp_path / "run")
-    assert -0.06 < rung.error < 0.01
-    assert abs(rung.force_balance) < 1e-3
-    assert abs(rung.mass_balance) < 1e-5
+def test_a_coarse_rung_has_the_exact_drag_within_a_percent(tmp_path: Path) -> None:
+    # three cells per diameter and curved walls; docs/verification.md shows what finer meshes reach
+    case = read_case(CASES / "square.toml")
+    rung = climb(rung_case(case, 0.1, 1.5), tmp_path / "run")
+    assert abs(rung.error) < 0.01
+    assert abs(rung.force_balance) < 1e-6
+    assert abs(rung.mass_balance) < 2e-5
     # rows at either end lack a neighbour: their drag is higher
-    assert min(rung.first_row, rung.last_row) > 0.97 * rung.f_star
+    assert min(rung.first_row, rung.last_row) > rung.f_star

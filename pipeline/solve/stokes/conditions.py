@@ -139,7 +139,14 @@ def _triangle_rule() -> tuple[Floats, Floats, Floats, Floats]:
     """Dunavant's rule of 6 points and degree 4 on the triangle, and the quadratic functions and slopes there."""
     a, b = 0.445948490915965, 0.091576213509771
     places = np.array(
-        [[a, a, 1 - 2 * a], [a, 1 - 2 * a, a], [1 - 2 * a, a, a], [b, b, 1 - 2 * b], [b, 1 - 2 * b, b], [1 - 2 * b, b, b]]
+        [
+            [a, a, 1 - 2 * a],
+            [a, 1 - 2 * a, a],
+            [1 - 2 * a, a, a],
+            [b, b, 1 - 2 * b],
+            [b, 1 - 2 * b, b],
+            [1 - 2 * b, b, b],
+        ]
     )
     weights = 0.5 * np.repeat([0.223381589678011, 0.109951743655322], 3)
     one, two = np.array([[0, 1], [1, 2], [2, 0]]).T

@@ -117,7 +117,7 @@ class Creep:
     error : float
         Of the drop, relative, as the iterations know it.
     balance : float
-        Force that is left over, relative to the pressure's on the inlet.
+        Drag on the fibers over the drop's force on the inlet, less 1.
     leak : float
         Flow out over flow in, less 1.
     history : tuple of (int, float)
@@ -141,9 +141,7 @@ class Creep:
         return self.history[-1][0]
 
 
-def creep(
-    duct: Duct, slip_length: float, tolerance: float, most: int, tell: Tell, start: Creep | None = None
-) -> Creep:
+def creep(duct: Duct, slip_length: float, tolerance: float, most: int, tell: Tell, start: Creep | None = None) -> Creep:
     """Solve for the creeping flow through a duct.
 
     Parameters
@@ -171,7 +169,7 @@ def creep(
     Notes
     -----
     The system is symmetric and its right side is the drop's own functional, so the drop of an iterate less the
-    product of iterate and residual is wrong by the square of the iterate's error only; what the two differ by bounds it.
+    product of iterate and residual, the sharper one, is wrong by the square of the iterate's error only (Becker & Rannacher 2001).
     """
     system = _System(duct, duct.conditions(slip_length))
     history: list[tuple[int, float]] = []
@@ -180,16 +178,16 @@ def creep(
 
     def settled(iterations: int, x: Floats) -> bool:
         look = system.look(x)
-        drop, size = look.drop, look.size
         before = history[-1][1] if history else np.inf
-        history.append((iterations, drop))
-        residuals.append(size)
-        state["error"] = abs(drop - before) / abs(drop) if drop else np.inf
-        tell(iterations, drop, state["error"])
+        history.append((iterations, look.sharper))
+        residuals.append(look.size)
+        change = max(abs(look.sharper - before), abs(look.drop - look.sharper))
+        state["error"] = change / abs(look.sharper) if look.sharper else np.inf
+        tell(iterations, look.sharper, state["error"])
         if len(residuals) > _PATIENCE and residuals[-1] > _STALLED * residuals[-1 - _PATIENCE]:
             raise StageError(
-                f"the flow stalls after {iterations} iterations (residual {size:.1e}): the mesh has cells too flat for "
-                "it; raise tetmesh.passes, or take another tetmesh.engine"
+                f"the flow stalls after {iterations} iterations (residual {look.size:.1e}): the mesh has cells too flat "
+                "for it; raise tetmesh.passes, or take another tetmesh.engine"
             )
         return state["error"] < tolerance and abs(look.balance) < BALANCE and abs(look.lost) < LOST
 
@@ -212,6 +210,7 @@ class _System:
         ends[middle - self.matrices.vertices] = duct.unknown[duct.nodes.ends]
         self.cycle = VelocityCycle(self.matrices, ends, conditions)
         self.scale_pressure = pressure_scale(self.matrices)
+        self.wall = np.unique(duct.unknown[duct.walls.wall])
         self.entrance = np.unique(duct.unknown[duct.nodes.of_triangles(duct.triangles[INLET])])
         force, divergence = self.full(conditions.given, np.zeros(self.matrices.vertices))
         conditions.project(force)
@@ -260,12 +259,16 @@ class _System:
         rest = self.right - self.times(x)
         rest[self.split :] /= _WEIGHT
         force, _ = self.full(x[: self.split].reshape(-1, 3) + self.conditions.given, x[self.split :])
-        drop = float(force[self.entrance, 2].sum() - x @ rest) / self.duct.area
-        left = float(rest[: self.split].reshape(-1, 3)[:, 2].sum())
+        inlet, drag = float(force[self.entrance, 2].sum()), -float(force[self.wall, 2].sum())
         # the pressure's functions sum to 1: the sum of their residuals is the air that is lost
         lost = float(rest[self.split :].sum())
+        area = self.duct.area
         return _Look(
-            drop, left / (drop * self.duct.area), lost / self.duct.area, float(np.linalg.norm(rest)) / self.scale
+            drop=inlet / area,
+            sharper=(inlet - float(x @ rest)) / area,
+            balance=drag / inlet - 1.0,
+            lost=lost / area,
+            size=float(np.linalg.norm(rest)) / self.scale,
         )
 
     def result(self, x: Floats, error: float, history: tuple[tuple[int, float], ...], settled: bool) -> Creep:
@@ -279,9 +282,10 @@ class _System:
 
 @dataclass(frozen=True, slots=True)
 class _Look:
-    """What an iterate is worth: its drop, the force and the air that are missing, relative, and its residual."""
+    """What an iterate is worth: its drop, plain and sharper, how far forces and air miss each other, its residual."""
 
     drop: float
+    sharper: float
     balance: float
     lost: float
     size: float

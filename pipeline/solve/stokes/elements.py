@@ -5,6 +5,7 @@ Compiled by numba: imported only where a flow is solved.
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,7 @@ import numpy.typing as npt
 
 from pipeline.geometry.compiled import compiled
 from pipeline.nouns.arrays import Floats, Ints
-from pipeline.solve.stokes.nodes import EDGES
+from pipeline.nouns.flow_field import EDGES
 
 Indices = npt.NDArray[np.int32]
 
@@ -40,8 +41,6 @@ def shape(places: Floats) -> tuple[Floats, Floats]:
 
 
 def _orbit(*barycentric: float) -> Floats:
-    import itertools
-
     return np.array(sorted(set(itertools.permutations(barycentric))))
 
 
@@ -107,7 +106,7 @@ def _columns_of_rows(rows_of: Indices, columns_of: Indices, rows: int) -> tuple[
 
 @compiled
 def _place_of(start: Ints, column_of: Indices, row: int, column: int) -> int:
-    low, high = start[row], start[row + 1] - 1
+    low, high = int(start[row]), int(start[row + 1]) - 1
     while low < high:
         middle = (low + high) // 2
         if column_of[middle] < column:
@@ -128,7 +127,7 @@ def _inverse(j: Floats, out: Floats) -> float:
     out[2, 0] = j[1, 0] * j[2, 1] - j[1, 1] * j[2, 0]
     out[2, 1] = j[0, 1] * j[2, 0] - j[0, 0] * j[2, 1]
     out[2, 2] = j[0, 0] * j[1, 1] - j[0, 1] * j[1, 0]
-    determinant = j[0, 0] * out[0, 0] + j[0, 1] * out[1, 0] + j[0, 2] * out[2, 0]
+    determinant = float(j[0, 0] * out[0, 0] + j[0, 1] * out[1, 0] + j[0, 2] * out[2, 0])
     for a in range(3):
         for b in range(3):
             out[a, b] /= determinant

@@ -17,7 +17,7 @@ def gmres(
     right: Floats,
     start: Floats,
     settled: Callable[[int, Floats], bool],
-    restart: int = 50,
+    restart: int = 60,
     look_every: int = 6,
     most: int = 1000,
 ) -> tuple[Floats, int, bool]:

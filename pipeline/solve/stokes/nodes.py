@@ -7,9 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeline.nouns.arrays import Floats, Ints
-
-EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]])
-"""Local vertices of a tetrahedron's edges, in VTK's order."""
+from pipeline.nouns.flow_field import EDGES
 
 FACE_EDGES = np.array([[0, 1], [1, 2], [2, 0]])
 """Local vertices of a triangle's edges, in VTK's order."""
@@ -52,7 +50,7 @@ class Nodes:
 
 
 def number_nodes(tets: Ints, vertices: int) -> Nodes:
-    """Number the middles of the edges of tetrahedra.
+    """Give the middles of the edges of tetrahedra their numbers.
 
     Parameters
     ----------

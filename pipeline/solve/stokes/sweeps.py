@@ -13,10 +13,11 @@ from pipeline.nouns.arrays import Floats, Ints
 
 Indices = npt.NDArray[np.int32]
 Flags = npt.NDArray[np.uint8]
+Values = Floats | npt.NDArray[np.float32]
 
 
 @compiled
-def times(start: Ints, column: Indices, values: Floats, x: Floats, y: Floats) -> None:
+def times(start: Ints, column: Indices, values: Values, x: Floats, y: Floats) -> None:
     """Matrix of numbers times (n, 3) vectors, into y."""
     for row in range(len(start) - 1):
         a, b, c = 0.0, 0.0, 0.0
@@ -53,7 +54,7 @@ def add_gradient(start: Ints, column: Indices, values: Floats, p: Floats, y: Flo
 
 @compiled
 def sweep(
-    start: Ints, column: Indices, values: Floats, over: Floats, fixed: Flags, right: Floats, x: Floats, backward: bool
+    start: Ints, column: Indices, values: Values, over: Floats, fixed: Flags, right: Floats, x: Floats, backward: bool
 ) -> None:
     """One Gauss-Seidel sweep of each component in place; `over` is one over the diagonal, what is fixed stays."""
     rows = len(start) - 1

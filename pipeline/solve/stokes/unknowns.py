@@ -14,7 +14,7 @@ TOLERANCE = 1e-6
 
 
 def unknown_of_nodes(points: Floats, nodes: Nodes, triangles: dict[str, Ints], cyclic: bool) -> Ints:
-    """Number the unknowns, those of vertices first.
+    """Give each node the number of its unknown, vertices first.
 
     Parameters
     ----------
@@ -55,8 +55,8 @@ def _pair(places: Floats, nodes: Nodes, triangles: dict[str, Ints], low: str, hi
     across = np.delete(np.arange(3), axis)
     size = float(places[above, axis].mean() - places[below, axis].mean())
     gap, nearest = cKDTree(places[below][:, across]).query(places[above][:, across])
-    if len(below) != len(above) or (gap > TOLERANCE * size).any() or len(np.unique(nearest)) != len(below):
-        lonely = int((gap > TOLERANCE * size).sum())
+    lonely = int(np.count_nonzero(np.asarray(gap) > TOLERANCE * size))
+    if len(below) != len(above) or lonely or len(np.unique(nearest)) != len(below):
         raise StageError(
             f"cyclic sides need the same triangles on {low} and {high}, but {lonely} of {len(above)} nodes of {high} "
             "have no partner: take another tetmesh.engine, or set enclosure.sides to symmetry"

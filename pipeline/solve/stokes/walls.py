@@ -3,15 +3,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from pipeline.geometry.tets import volumes
-from pipeline.nouns.arrays import Floats, Ints
+from pipeline.nouns.arrays import Bools, Floats, Ints
 from pipeline.nouns.fibers import Pieces
+from pipeline.nouns.flow_field import EDGES
 from pipeline.solve.stokes.elements import rule, shape
 from pipeline.solve.stokes.nodes import Nodes
+
+if TYPE_CHECKING:
+    from pipeline.geometry.fibers import FiberDistance
 
 _STEP = 0.35  # of the lattice that finds the nearest fiber, in mean fiber diameters
 _REACH = 1.5  # mean fiber diameters; no wall is that far from every fiber
@@ -46,7 +50,7 @@ class Walls:
     """
 
     positions: Floats
-    curved: npt.NDArray[np.bool_]
+    curved: Bools
     wall: Ints
     fiber: Ints
     normal: Floats
@@ -88,7 +92,7 @@ def curve_walls(
     free = ~(np.isclose(points, lower, atol=1e-7) | np.isclose(points, upper, atol=1e-7))
     length = np.linalg.norm(points[nodes.ends[:, 0]] - points[nodes.ends[:, 1]], axis=1)
     corners = np.unique(faces)
-    moved = _moved_vertices(points, nodes, corners, distance.snapped, free, length)
+    moved = _moved_vertices(points, nodes, corners, distance, free, length)
     edge = np.unique(nodes.of_triangles(faces)[:, 3:]) - nodes.vertices
     middle = nodes.middles(moved)
     ends = nodes.ends[edge]
@@ -101,18 +105,19 @@ def curve_walls(
     offset, curved = _straightened(moved, nodes, middle, offset)
     positions = np.concatenate([moved, middle + offset])
     wall = np.concatenate([corners, nodes.vertices + edge])
-    fiber, normal, axis = _true_normals(positions[wall], distance.with_piece, distance.source, pieces, radius)
+    fiber, normal, axis = _true_normals(positions[wall], distance, pieces, radius)
     is_bent = (offset[edge] != 0.0).any(axis=1) | (np.abs(distance.at(middle[edge])) < _ON_FIBER)
-    return Walls(
-        positions, curved, wall, fiber, normal, radius[fiber], axis, int((~is_bent).sum()), len(edge)
-    )
+    return Walls(positions, curved, wall, fiber, normal, radius[fiber], axis, int((~is_bent).sum()), len(edge))
 
 
-def _moved_vertices(points, nodes, corners, snapped, free, length) -> Floats:  # type: ignore[no-untyped-def]
+def _moved_vertices(
+    points: Floats, nodes: Nodes, corners: Ints, distance: "FiberDistance", free: Bools, length: Floats
+) -> Floats:
+    """Move vertices on the walls onto the fibers where they are off and no cell becomes flat."""
     shortest = np.full(nodes.vertices, np.inf)
     for end in nodes.ends.T:
         np.minimum.at(shortest, end, length)
-    onto, done = snapped(points[corners], free[corners].astype(np.float64), _LEASH * float(length.max()))
+    onto, done = distance.snapped(points[corners], free[corners].astype(np.float64), _LEASH * float(length.max()))
     near = done & (np.linalg.norm(onto - points[corners], axis=1) <= _LEASH * shortest[corners])
     tets, before = nodes.cells[:, :4], volumes(points, nodes.cells[:, :4])
     moved = points.copy()
@@ -125,10 +130,11 @@ def _moved_vertices(points, nodes, corners, snapped, free, length) -> Floats:  #
         moved[back] = points[back]
 
 
-def _straightened(points: Floats, nodes: Nodes, middle: Floats, offset: Floats) -> tuple[Floats, npt.NDArray[np.bool_]]:
+def _straightened(points: Floats, nodes: Nodes, middle: Floats, offset: Floats) -> tuple[Floats, Bools]:
     """Take the bend out of the edges of cells that would turn inside out, until none does."""
     edges = nodes.cells[:, 4:] - nodes.vertices
-    corners = np.concatenate([np.eye(4), rule(True)[0], nodes_of_reference()])
+    middles = 0.5 * (np.eye(4)[EDGES[:, 0]] + np.eye(4)[EDGES[:, 1]])
+    corners = np.concatenate([np.eye(4), middles, rule(True)[0]])
     slopes = shape(corners)[1]
     straight = 6.0 * volumes(points, nodes.cells[:, :4])
     while True:
@@ -145,17 +151,10 @@ def _straightened(points: Floats, nodes: Nodes, middle: Floats, offset: Floats) 
         offset[edges[bad]] = 0.0
 
 
-def nodes_of_reference() -> Floats:
-    """Barycentric coordinates of the middles of a tetrahedron's edges, (6, 4) array."""
-    from pipeline.solve.stokes.nodes import EDGES
-
-    middle: Floats = 0.5 * (np.eye(4)[EDGES[:, 0]] + np.eye(4)[EDGES[:, 1]])
-    return middle
-
-
-def _true_normals(at, with_piece, source, pieces, radius):  # type: ignore[no-untyped-def]
-    off, found = with_piece(at)
-    piece = source[np.maximum(found, 0)]
+def _true_normals(at: Floats, distance: "FiberDistance", pieces: Pieces, radius: Floats) -> tuple[Ints, Floats, Floats]:
+    """Fiber, normal out of the air, and direction of the fiber at places; no normal where a place is on none."""
+    off, found = distance.with_piece(at)
+    piece = distance.source[np.maximum(found, 0)]
     start, line = pieces.start[piece], pieces.end[piece] - pieces.start[piece]
     length = np.linalg.norm(line, axis=1)
     axis = line / length[:, None]

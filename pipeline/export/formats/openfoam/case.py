@@ -40,7 +40,7 @@ def write_openfoam(
     settings : ExportSettings
     progress : Progress
     slip : FiberSlip, optional
-        How far the air slips along the fibers; needed just where ``settings.fiber_wall`` is ``"slip"``.
+        How far the air slips along the fibers; it stands still on them without.
 
     Raises
     ------
@@ -48,8 +48,6 @@ def write_openfoam(
         If a patch is missing, empty or unknown, or the sides are cyclic but do not fit each other.
     """
     settings = settings or ExportSettings()
-    if (slip is not None) is not (settings.fiber_wall == "slip"):
-        raise ValueError("a slip is given just where fiber_wall is slip")
     _refuse_odd_patches(mesh)
     if sides == "cyclic":
         mesh = with_matching_sides(mesh)
