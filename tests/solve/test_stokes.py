@@ -194,8 +194,6 @@ def test_cells_inside_out_are_refused_with_the_place() -> None:
 
 def test_flows_that_are_not_creeping_air_are_refused_with_the_reason() -> None:
     mesh, domain = rows(0.1, around=4, outward=4)
-    with pytest.raises(StageError, match=r"Mach 0\.58"):
-        solved(mesh, domain, flow=dataclasses.replace(AIR, face_velocity=200.0))
     with pytest.raises(StageError, match=r"Reynolds number is .* inertia"):
         solved(mesh, domain, flow=dataclasses.replace(AIR, face_velocity=20.0))
     with pytest.raises(StageError, match=r"beyond the gap .* transition"):

@@ -169,7 +169,8 @@ def creep(duct: Duct, slip_length: float, tolerance: float, most: int, tell: Tel
     Notes
     -----
     The system is symmetric and its right side is the drop's own functional, so the drop of an iterate less the
-    product of iterate and residual, the sharper one, is wrong by the square of the iterate's error only (Becker & Rannacher 2001).
+    product of iterate and residual, the sharper one, is wrong by the square of the iterate's error only
+    (Becker & Rannacher 2001).
     """
     system = _System(duct, duct.conditions(slip_length))
     history: list[tuple[int, float]] = []
@@ -186,8 +187,8 @@ def creep(duct: Duct, slip_length: float, tolerance: float, most: int, tell: Tel
         tell(iterations, look.sharper, state["error"])
         if len(residuals) > _PATIENCE and residuals[-1] > _STALLED * residuals[-1 - _PATIENCE]:
             raise StageError(
-                f"the flow stalls after {iterations} iterations (residual {look.size:.1e}): the mesh has cells too flat "
-                "for it; raise tetmesh.passes, or take another tetmesh.engine"
+                f"the flow stalls after {iterations} iterations (residual {look.size:.1e}): the mesh has cells "
+                "too flat for it; raise tetmesh.passes, or take another tetmesh.engine"
             )
         return state["error"] < tolerance and abs(look.balance) < BALANCE and abs(look.lost) < LOST
 

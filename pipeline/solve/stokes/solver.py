@@ -24,11 +24,8 @@ from pipeline.solve.stokes.passage import refuse_blocked
 
 MOST_REYNOLDS = 0.5
 """Fiber Reynolds number up to which the drag of creeping flow is right within .5 %."""
-MOST_MACH = 0.3
-"""Mach number above which air is no longer incompressible."""
 _NODE_MEMORY = 2600  # bytes per node that a flow takes at its peak, measured on 38,000 to 150,000 cells
 _MEMORY_SHARE = 0.85
-_GAS = 287.05  # J/(kg K), of dry air
 _OTHER = {"slip": "no_slip", "no_slip": "slip"}
 
 
@@ -166,9 +163,6 @@ def _duct(mesh: FaceMesh, domain: FluidDomain, unit: float, sides: str) -> Duct:
 
 
 def _refuse_flow(flow: Flow, reynolds: float, length: float, unit: float, solidity: float, wall: str) -> None:
-    mach = flow.face_velocity / math.sqrt(1.4 * _GAS * flow.temperature)
-    if mach > MOST_MACH:
-        raise StageError(f"the face velocity is Mach {mach:.2g}: above {MOST_MACH} air is compressible; lower it")
     if reynolds > MOST_REYNOLDS:
         raise StageError(
             f"the fibers' Reynolds number is {reynolds:.3g}: above {MOST_REYNOLDS} inertia counts, "
