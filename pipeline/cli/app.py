@@ -250,6 +250,85 @@ def tune(
 
 
 @app.command
+def measure(
+    image: Path,
+    *,
+    pixel: str | None = None,
+    bar: str | None = None,
+    window: str | None = None,
+    case: Path | None = None,
+    page: Path | None = None,
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    quiet: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Measure the fibers of a micrograph: diameters, directions, and the laws that a mat of them has.
+
+    Beads, streaks, crossings and the strip below the picture do not count. docs/measuring.md tells how far to trust it.
+
+    Parameters
+    ----------
+    image
+        The picture, TIFF or PNG.
+    pixel
+        Length of a pixel: ``--pixel "25 nm"``; unless given, what the file says.
+    bar
+        Length that the bar in the picture's strip stands for, ``--bar "10 um"``, instead of the pixel's.
+    window
+        Part of the picture: left,top,right,bottom in pixels.
+    case
+        Write the case whose mat has these laws into this file (.toml).
+    page
+        Write the page, the picture with what was seen drawn over it, into this file (.html) instead of
+        ``runs/<name of the picture>/micrograph.html``.
+    as_json
+        Print JSON with SI numbers instead of a table.
+    quiet
+        Print nothing but errors.
+    """
+    from pipeline.cli.measuring import measure_picture
+
+    measure_picture(image, pixel, bar, window, page, case, as_json, quiet)
+
+
+@app.command
+def micrograph(
+    source: Path,
+    into: Path,
+    *,
+    pixel: str | None = None,
+    depth: str | None = None,
+    edge: float = 1.0,
+    blur: float = 1.0,
+    noise: float = 0.05,
+    seed: int = 0,
+) -> None:
+    """Take the picture of a mat from above as a scanning electron microscope would, to hold it beside a real one.
+
+    Parameters
+    ----------
+    source
+        A case file, whose mat is grown, or the folder of a run.
+    into
+        The picture to write (.png).
+    pixel
+        Length of a pixel; a twentieth of the mean diameter unless given.
+    depth
+        Depth over which brightness falls by a factor of e; three mean diameters unless given.
+    edge
+        By how much rims are brighter than the middle of a fiber, as a share of it.
+    blur
+        Standard deviation of the beam's width, in pixels.
+    noise
+        Standard deviation of each pixel, as a share of the brightness of the top.
+    seed
+        Of the noise.
+    """
+    from pipeline.cli.measuring import take_picture
+
+    take_picture(found(source), into, pixel, depth, edge, blur, noise, seed)
+
+
+@app.command
 def study(
     study: Path,
     *,

@@ -15,14 +15,18 @@ from pipeline.micrograph.profile import Floats, Optics, fitted, middle_line, opt
 from pipeline.micrograph.ribbons import Image, slopes
 from pipeline.micrograph.trace import Trace, traces
 
-_EXPLAINED = 0.85
+_EXPLAINED = 0.97
 """Share of a profile's variance below which it is no cylinder's: two fibers side by side, or a bead's foot."""
 _EVEN = 0.3
 """How far a fiber stands out of one side over how far out of the other, at least; rims stand out of one alone."""
 _NARROWEST = 4.0
 """Diameter in pixels below which the beam's width is all that is seen, and bright rims look like fibers."""
+_SLENDER = 10.0
+"""One fiber at least is seen over this many of its diameters: no blob or wrinkle is."""
 _FOR_OPTICS = 10
 """The clearest fibers tell the picture's blur and rims."""
+_UNCERTAIN = 0.6
+"""Two diameters of one fiber differ by this many pixels in noise."""
 _TURN = math.radians(3.0)
 _ASIDE = 0.35
 _ALIKE = 0.1
@@ -87,7 +91,8 @@ def fibers_of(brightness: Image) -> Sight | None:
         if fit.explained >= _EXPLAINED and fit.evenness >= _EVEN and 2.0 * fit.half_width >= _NARROWEST:
             kept.append(trace)
             widths.append(2.0 * fit.half_width)
-    if not kept:
+    slenderness = np.array([trace.seen for trace in kept]) / np.array(widths)
+    if not kept or slenderness.max() < _SLENDER:
         return None
     return Sight(tuple(_linked(kept, np.array(widths))), optics, steepness.noise)
 
@@ -100,9 +105,11 @@ def _linked(found: Sequence[Trace], width: Floats) -> list[FiberSeen]:
     pairs = []
     for i in range(len(found)):
         for j in range(i + 1, len(found)):
-            if abs(math.log(width[i] / width[j])) > _ALIKE:
+            if abs(math.log(width[i] / width[j])) > _ALIKE + _UNCERTAIN / min(width[i], width[j]):
                 continue
-            if any(_runs_on(ends[i, a], outward[i, a], ends[j, b], outward[j, b], width[i]) for a in (0, 1) for b in (0, 1)):
+            if any(
+                _runs_on(ends[i, a], outward[i, a], ends[j, b], outward[j, b], width[i]) for a in (0, 1) for b in (0, 1)
+            ):
                 pairs.append((i, j))
     one, other = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
     graph = coo_array((np.ones(len(one)), (one, other)), shape=(len(found), len(found)))

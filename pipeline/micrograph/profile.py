@@ -1,8 +1,8 @@
 """Diameters to a fraction of a pixel: the brightness across a fiber, fitted by what the microscope makes of a cylinder.
 
-A surface that is tilted sends more electrons, about as 1 / cos of the tilt, so rims are brighter than the middle; in light
-they are darker. With one level on the left and one on the right, all is blurred by the beam. Blur and rims belong to the
-picture: were they free for each fiber, a thin one with bright rims would look like a wide one without.
+A surface that is tilted sends more electrons, about as 1 / cos of the tilt, so rims are brighter than the middle; in
+light they are darker. With one level on the left and one on the right, all is blurred by the beam. Blur and rims belong
+to the picture: were they free for each fiber, a thin one with bright rims would look like a wide one without.
 """
 
 # SPDX-License-Identifier: GPL-3.0-or-later
@@ -32,8 +32,6 @@ _DARKS = (0.0, 0.6)
 _FIRST_STEPS = np.array([[0.0, 0.0, 0.0], [0.15, 0.0, 0.0], [0.0, 0.4, 0.0], [0.0, 0.0, 0.15]])
 _STEEPEST = 4.0
 """Brightness of a grazing rim over that of a level surface at most: the escape of electrons is bounded."""
-_RIMS = (-0.9, -0.4, 0.0, 1.0, 3.0)
-"""Brightness of rims, less 1, from which the picture's is searched."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -167,10 +165,14 @@ def optics_of(taken: Sequence[Profile]) -> Optics:
         return float(np.mean([math.log(max(_best(profile, optics)[1], 1e-12)) for profile in taken]))
 
     start = min((Optics(blur, rim, dark) for blur in _BLURS for rim in _RIMS for dark in _DARKS), key=cost)
+
     # the blur has no sign: it is searched as its logarithm
-    place = np.array([math.log(start.blur), start.rim, start.dark])
+    def of_place(at: Floats) -> float:
+        return cost(_optics(at))
+
+    place: Floats = np.array([math.log(start.blur), start.rim, start.dark])
     result = minimize(
-        lambda at: cost(_optics(at)),
+        of_place,
         place,
         method="Nelder-Mead",
         options={"maxfev": 70, "initial_simplex": place + _FIRST_STEPS, "xatol": 0.02, "fatol": 0.003},

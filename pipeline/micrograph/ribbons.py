@@ -1,9 +1,9 @@
 """Bright ribbons of any width and direction, by their two edges.
 
 A fiber is where brightness rises on one side and falls on the other. The weaker of the two edges is the response, after
-Koller, Gerig, Szekely and Dettwiler, *Multiscale detection of curvilinear structures in 2-D and 3-D image data*, ICCV 1995
-(doi 10.1109/ICCV.1995.466846): a single edge gives none, and what lies between the edges, a bright rim or a dark middle,
-does not matter. Edges are averaged along the ribbon, which takes noise and what crosses it away.
+Koller, Gerig, Szekely and Dettwiler, *Multiscale detection of curvilinear structures in 2-D and 3-D image data*,
+ICCV 1995: a single edge gives none, and what lies between the edges, a bright rim or a dark middle, does not matter.
+Edges are averaged along the ribbon, which takes noise and what crosses it away.
 """
 
 # SPDX-License-Identifier: GPL-3.0-or-later
@@ -101,7 +101,7 @@ def _average_along(
     weights: npt.NDArray[np.float32],
     out: Image,
 ) -> None:
-    """Average along a line through each pixel, between the pixels it passes; pixels outside count as the nearest one."""
+    """Average along a line through each pixel; what lies outside counts as the nearest pixel."""
     rows, columns = slope.shape
     for row in range(rows):
         for column in range(columns):

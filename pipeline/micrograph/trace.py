@@ -77,7 +77,8 @@ def half_widths(shape: tuple[int, int]) -> npt.NDArray[np.float64]:
     """Half widths that are looked for [pixel], up to an eighth of the picture's shorter side."""
     widest = max(min(shape) / 8.0, 2 * _THINNEST)
     count = int(math.log(widest / _THINNEST) / math.log(_WIDTHS_RATIO)) + 1
-    return _THINNEST * _WIDTHS_RATIO ** np.arange(count)
+    widths: npt.NDArray[np.float64] = _THINNEST * _WIDTHS_RATIO ** np.arange(count, dtype=np.float64)
+    return widths
 
 
 def traces(slopes: Slopes) -> list[Trace]:
@@ -223,14 +224,14 @@ def _follow(
     capacity = 2 * (rows + columns)
     path = np.zeros((capacity, 4))
     path[0] = (x, y, half, response)
-    count, clear, gap = 1, 1, 0.0
+    count, gap = 1, 0.0
     usual = response
     while count < capacity:
         x += step * np.cos(angle)
         y += step * np.sin(angle)
         if x < 0 or y < 0 or x > columns - 1 or y > rows - 1:
             break
-        best, best_offset, best_half = 0.0, 0.0, half
+        best, best_half = 0.0, half
         middle = int(np.floor(angle / np.pi * directions + 0.5))
         for turn in range(-1, 2):
             k = (middle + turn) % directions
@@ -245,7 +246,7 @@ def _follow(
                         _sample(across, k, px - h * nx, py - h * ny), -_sample(across, k, px + h * nx, py + h * ny)
                     )
                     if weaker > best:
-                        best, best_offset, best_half = weaker, 0.5 * i, h
+                        best, best_half = weaker, h
                         bx, by, bk = px, py, k
         seen = best > max(least, 0.3 * usual)
         if seen:
