@@ -19,6 +19,7 @@ from pipeline.capture.contact import fiber_grid, touching_fibers
 from pipeline.capture.counting import Filter, counted
 from pipeline.capture.first_row import first_row
 from pipeline.capture.intervals import share_interval
+from pipeline.capture.langevin import Motion
 from pipeline.capture.particles import motion_of
 from pipeline.capture.settings import PARTICLES, CaptureSettings, Mechanism
 from pipeline.capture.size_curve import most_penetrating_size
@@ -33,6 +34,7 @@ from pipeline.progress import Progress, silent
 _TRANSITS = 100.0  # a particle is given up after so many times that the air takes through the duct
 _STEPS = 1_000_000
 _SLICES = 20
+_PATHS = 2000
 _ALONE = 5  # of a mechanism alone, one particle for so many of all together
 _SIEVED = 0.02  # of the particle's diameter: two fibers within that of its surface hold it together
 
@@ -109,7 +111,16 @@ def capture(
         In the order of sizes and particles.
     """
     sizes = [_size(number, medium, settings, air, tell, kept) for number in range(len(settings.diameters()))]
-    return _summary(sizes, medium, settings, air), _where(sizes, medium)
+    stray = _stray(medium, settings, air)
+    return _summary(sizes, stray, medium, settings, air), _where(sizes, medium)
+
+
+def _stray(medium: Medium, settings: CaptureSettings, air: FlowSettings) -> float:
+    filter, _ = _filter(medium, 0.0)
+    point = Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    pace = pace_of(float(medium.mat.radius.min()), False, _TRANSITS * medium.box.size[2] / air.face_velocity)
+    *_, fates = counted(filter, point, pace, settings.seed, 0, _PATHS, None)
+    return float((fates.outcome == CAPTURED).mean())
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -210,10 +221,10 @@ def pace_of(radius: float, diffuses: bool, time: float) -> Pace:
     time : float [s]
         After which a particle is given up.
     """
-    return Pace(0.25, 0.5, (0.1 if diffuses else 0.05) * radius, True, time, _STEPS)
+    return Pace(0.25, 0.3, (0.1 if diffuses else 0.05) * radius, True, time, _STEPS)
 
 
-def _summary(sizes: list[_Size], medium: Medium, settings: CaptureSettings, air: FlowSettings) -> Capture:
+def _summary(sizes: list[_Size], stray: float, medium: Medium, settings: CaptureSettings, air: FlowSettings) -> Capture:
     diameter = np.array([size.diameter for size in sizes])
     outcomes = {
         kind: np.array([int((size.fates.outcome == kind).sum()) for size in sizes])
@@ -261,6 +272,7 @@ def _summary(sizes: list[_Size], medium: Medium, settings: CaptureSettings, air:
         depth=_depth_profile(sizes, medium),
         seed=settings.seed,
         flow_solver=medium.solver,
+        stray=stray,
     )
 
 

@@ -13,7 +13,7 @@ Mechanism = Literal["interception", "diffusion", "inertia", "gravity"]
 MECHANISMS: tuple[Mechanism, ...] = ("interception", "diffusion", "inertia", "gravity")
 """What brings a particle to a fiber: its size, its Brownian motion, its mass, its weight."""
 
-PARTICLES = 5000
+PARTICLES = 10_000
 """Particles of each size where the case says neither how many nor how sure."""
 
 
@@ -49,7 +49,7 @@ class CaptureSettings(BaseModel):
         description="Particle sizes: a list, or a table with smallest, largest and count.",
     )
     particles: int | None = Field(
-        default=None, ge=1, le=100_000_000, description="Particles of each size; 5000 where no half_width is given."
+        default=None, ge=1, le=100_000_000, description="Particles of each size; 10,000 where no half_width is given."
     )
     half_width: Fraction | None = Field(
         default=None,

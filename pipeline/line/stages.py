@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 from pipeline.analytics.settings import FlowSettings
+from pipeline.capture.stage import CAPTURE
 from pipeline.compare.stage import COMPARE
 from pipeline.enclosure.stage import ENCLOSURE
 from pipeline.export.stage import EXPORT
@@ -23,6 +24,7 @@ LINE: tuple[Stage, ...] = (
     EXPORT,
     COMPARE,
     SOLVE,
+    CAPTURE,
     REPORT,
 )
 

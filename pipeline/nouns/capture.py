@@ -94,6 +94,9 @@ class Capture:
     seed : int
     flow_solver : str
         Whose velocity the particles followed.
+    stray : float [-]
+        Share of the air's own paths that end on a fiber, which none should: what mesh and flow add to the efficiency of
+        points.
     """
 
     particle_diameter: tuple[float, ...]
@@ -124,6 +127,7 @@ class Capture:
     depth: DepthProfile
     seed: int
     flow_solver: str
+    stray: float
 
     def __post_init__(self) -> None:
         ends = zip(self.released, self.captured, self.passed, self.timed_out, strict=True)
