@@ -53,7 +53,7 @@ def filter_rows(capture: Capture) -> list[tuple[str, str]]:
         rows.append(("group after ISO 16890", capture.iso_16890_group))
     if any(capture.timed_out):
         rows.append(("given up before they had an end", f"{sum(capture.timed_out):,} particles"))
-    rows.append(("paths of the air that end on a fiber", f"{share(capture.stray)}: error of flow and mesh"))
+    rows.append(("paths of the air that end on a fiber", f"{share(capture.stray)}, by the error of mesh and flow"))
     return rows
 
 

@@ -51,7 +51,7 @@ def prospect_table(prospects: "Iterable[Prospect]") -> Table:
     return table
 
 
-_PER_SI = {"%": 100.0, "um": 1e6, "um3": 1e18, "Pa": 1.0, "deg": 1.0}
+_PER_SI = {"nm": 1e9, "%": 100.0, "um": 1e6, "um3": 1e18, "Pa": 1.0, "deg": 1.0}
 """How many of a unit, in which a stage tells a count, make one in SI."""
 
 
