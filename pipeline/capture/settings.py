@@ -3,11 +3,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import math
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator, model_validator
 
-from pipeline.units import Density, Fraction, Length
+from pipeline.units import Density, Fraction, Length, written
 
 Mechanism = Literal["interception", "diffusion", "inertia", "gravity"]
 MECHANISMS: tuple[Mechanism, ...] = ("interception", "diffusion", "inertia", "gravity")
@@ -17,20 +17,12 @@ PARTICLES = 10_000
 """Particles of each size where the case says neither how many nor how sure."""
 
 
-class SizeRange(BaseModel):
-    """Sizes in even steps of their logarithm (case file: ``[capture.particle_diameters]``)."""
-
+class _SizeRange(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    smallest: Length = Field(description="Smallest particle diameter.")
-    largest: Length = Field(description="Largest particle diameter.")
-    count: int = Field(ge=2, le=100, description="How many sizes, both ends included.")
-
-    @model_validator(mode="after")
-    def _rises(self) -> Self:
-        if self.smallest >= self.largest:
-            raise ValueError("the smallest diameter is not below the largest")
-        return self
+    smallest: Length
+    largest: Length
+    count: int = Field(ge=2, le=100)
 
 
 class CaptureSettings(BaseModel):
@@ -44,9 +36,9 @@ class CaptureSettings(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    particle_diameters: tuple[Length, ...] | SizeRange = Field(
+    particle_diameters: tuple[Length, ...] = Field(
         default=(30e-9, 100e-9, 300e-9, 1e-6, 3e-6),
-        description="Particle sizes: a list, or a table with smallest, largest and count.",
+        description="particle sizes, or a table { smallest, largest, count } for even steps of the logarithm",
     )
     particles: int | None = Field(
         default=None, ge=1, le=100_000_000, description="Particles of each size; 10,000 where no half_width is given."
@@ -67,15 +59,35 @@ class CaptureSettings(BaseModel):
         description="Direction of gravity to the flow (across: along x); that of [flow] preset unless given.",
     )
 
+    @field_validator("particle_diameters", mode="before")
+    @classmethod
+    def _range_written_out(cls, value: Any, info: ValidationInfo) -> Any:
+        if not isinstance(value, dict):
+            return value
+        try:
+            sizes = _SizeRange.model_validate(value, context=info.context)
+        except ValidationError as problem:
+            wrong = problem.errors(include_url=False)[0]
+            message = str(wrong["msg"]).removeprefix("Value error, ")
+            raise ValueError(
+                f"{'.'.join(map(str, wrong['loc']))}: {message[:1].lower()}{message[1:]}; "
+                'a range is { smallest = "30 nm", largest = "3 um", count = 9 }'
+            ) from None
+        if sizes.smallest >= sizes.largest:
+            raise ValueError("the smallest diameter is not below the largest")
+        step = math.log(sizes.largest / sizes.smallest) / (sizes.count - 1)
+        inner = [sizes.smallest * math.exp(k * step) for k in range(1, sizes.count - 1)]
+        # as text again, which a case file has to hold
+        return [written(float(f"{size:.6g}"), "m") for size in (sizes.smallest, *inner, sizes.largest)]
+
     @model_validator(mode="after")
     def _says_one_thing(self) -> Self:
         if self.particles is not None and self.half_width is not None:
             raise ValueError("give particles or half_width, not both")
-        if isinstance(self.particle_diameters, tuple):
-            if not self.particle_diameters:
-                raise ValueError("particle_diameters is empty; name at least one size")
-            if len(set(self.particle_diameters)) < len(self.particle_diameters):
-                raise ValueError("a size stands twice in particle_diameters")
+        if not self.particle_diameters:
+            raise ValueError("particle_diameters is empty; name at least one size")
+        if len(set(self.particle_diameters)) < len(self.particle_diameters):
+            raise ValueError("a size stands twice in particle_diameters")
         if not self.mechanisms:
             raise ValueError("mechanisms is empty: nothing would be caught; leave it out for all of them")
         if len(set(self.mechanisms)) < len(self.mechanisms):
@@ -84,9 +96,4 @@ class CaptureSettings(BaseModel):
 
     def diameters(self) -> tuple[float, ...]:
         """Give the particle diameters [m], rising."""
-        sizes = self.particle_diameters
-        if isinstance(sizes, SizeRange):
-            step = math.log(sizes.largest / sizes.smallest) / (sizes.count - 1)
-            inner = (sizes.smallest * math.exp(k * step) for k in range(1, sizes.count - 1))
-            return (sizes.smallest, *inner, sizes.largest)
-        return tuple(sorted(sizes))
+        return tuple(sorted(self.particle_diameters))

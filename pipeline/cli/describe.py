@@ -132,6 +132,8 @@ def _takes(part: _Part) -> str:
         return " or ".join(f'"{name}"' for name in get_args(kind))
     if get_origin(kind) is tuple:
         element = get_args(kind)[0]
+        if get_origin(element) is Annotated:
+            return "list, each a " + _takes(next(_parts(element, ())))
         return "list of " + ("tables" if _is_table(element) else ", ".join(f'"{name}"' for name in get_args(element)))
     if _is_table(kind):
         return "a table"
@@ -166,6 +168,10 @@ def _default(info: FieldInfo, parts: list[_Part]) -> str | None:
         return str(value).lower()
     if isinstance(value, float):
         return written(value, "")
+    if isinstance(value, tuple) and get_origin(parts[0].kind) is tuple:
+        unit = _unit(next(_parts(get_args(parts[0].kind)[0], ())))
+        if unit:
+            return json.dumps([written(float(each), unit) for each in value])
     return json.dumps(list(value) if isinstance(value, tuple) else value)
 
 

@@ -12,7 +12,7 @@ import pytest
 from pipeline.analytics.settings import FlowSettings
 from pipeline.capture import counting
 from pipeline.capture.capture import capture
-from pipeline.capture.settings import CaptureSettings, SizeRange
+from pipeline.capture.settings import CaptureSettings
 from tests.capture.media import RADIUS, SIDE, SPEED, straight_fibers
 
 AIR = FlowSettings(face_velocity=SPEED)
@@ -97,9 +97,10 @@ def test_particles_that_rest_are_given_up_and_widen_the_interval_and_are_not_dro
 
 
 def test_a_range_has_even_steps_of_the_logarithm_and_both_ends() -> None:
-    sizes = CaptureSettings(particle_diameters=SizeRange(smallest=30e-9, largest=3e-6, count=5)).diameters()
+    table = {"smallest": "30 nm", "largest": "3 um", "count": 5}
+    sizes = CaptureSettings.model_validate({"particle_diameters": table}).diameters()
     assert (sizes[0], sizes[-1]) == (30e-9, 3e-6)
-    assert [math.log10(b / a) for a, b in itertools.pairwise(sizes)] == pytest.approx([0.5] * 4)
+    assert [math.log10(b / a) for a, b in itertools.pairwise(sizes)] == pytest.approx([0.5] * 4, abs=1e-5)
 
 
 @pytest.mark.parametrize(
@@ -111,6 +112,9 @@ def test_a_range_has_even_steps_of_the_logarithm_and_both_ends() -> None:
         ({"mechanisms": []}, "nothing would be caught"),
         ({"particles": 0}, "greater than or equal to 1"),
         ({"particle_diameters": {"smallest": "1 um", "largest": "1 um", "count": 3}}, "not below the largest"),
+        ({"particle_diameters": {"smallest": "1 um", "largest": "2 um"}}, "count: field required"),
+        ({"particle_diameters": {"smallest": "1 kg", "largest": "2 um", "count": 3}}, "smallest: write a number"),
+        ({"particle_diameters": ["5 kg"]}, "write a number with a unit"),
     ],
 )
 def test_nonsense_is_refused_with_words(keys: dict[str, object], words: str) -> None:
