@@ -106,7 +106,8 @@ def cells_of(
         opening = position[:, 2] >= high - 1e-9 * (high - low)
     at_opening = opening[tets]
     free = (at_opening.sum(axis=1, keepdims=True) - at_opening == 3) & (neighbor < 0)
-    flux = conserved(nodes, position, velocity, neighbor, free, through).flux
+    wall = (neighbor < 0) & ~free & ~_on_planes(position[tets])
+    flux = conserved(nodes, position, velocity, neighbor, free, wall, through).flux
     curved = off > 1e-6 * size
     straight = sides[~curved]
     flux[~curved] = flux[~curved] @ straight / np.linalg.det(straight)[:, None, None]
@@ -128,6 +129,16 @@ def cells_of(
         lower=lower,
         cube=cube,
     )
+
+
+def _on_planes(corners: Floats) -> Bools:
+    """Whether the face against each vertex lies on a plane of the box around all, (m, 4)."""
+    lower, upper = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+    near = 1e-9 * (upper - lower)
+    found = np.zeros(corners.shape[:2], bool)
+    for on in (corners <= lower + near, corners >= upper - near):
+        found |= (on.sum(axis=1, keepdims=True) - on == 3).any(axis=2)
+    return found
 
 
 def _grid_shape(extent: Floats, cells: int) -> Ints:

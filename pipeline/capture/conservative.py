@@ -63,7 +63,13 @@ class Conserved(NamedTuple):
 
 
 def conserved(
-    nodes: Ints, position: Floats, velocity: Floats, neighbor: Ints, opening: Bools, through: Floats | None = None
+    nodes: Ints,
+    position: Floats,
+    velocity: Floats,
+    neighbor: Ints,
+    opening: Bools,
+    wall: Bools,
+    through: Floats | None = None,
 ) -> Conserved:
     """Correct a velocity of second order until it loses no air anywhere.
 
@@ -75,7 +81,9 @@ def conserved(
     neighbor : (m, 4) int array
         Cell behind the face against each vertex, -1 at the boundary.
     opening : (m, 4) bool array
-        Faces of the boundary whose flux is free, as an outlet's is; on the others it stays.
+        Faces of the boundary whose flux is free, as an outlet's is; on others, as an inlet's, it stays.
+    wall : (m, 4) bool array
+        Faces that let no air through, which a slip condition keeps to in the mean only.
     through : (m, 4) array [m3/s], optional
         Flux out of each face where it is known, as a solver on finite volumes knows it.
 
@@ -93,7 +101,7 @@ def conserved(
     )
     before = flux.copy()
     outward = _outward(flux)
-    put = _missing(outward, neighbor, opening) if through is None else through - outward
+    put = _missing(outward, neighbor, opening, wall) if through is None else through - outward
     # of Raviart and Thomas: 2 (place - opposite vertex) has a flux of 1 through its face and none through others
     flux += np.einsum("mk,nkx->mnx", put, 2.0 * (_PLACES[:, None] - _CORNERS))
     divergence = np.einsum("mnx,vnx->mv", flux, _SLOPES[:4])
@@ -122,13 +130,14 @@ def _outward(flux: Floats) -> Floats:
     return found
 
 
-def _missing(outward: Floats, neighbor: Ints, opening: Bools) -> Floats:
+def _missing(outward: Floats, neighbor: Ints, opening: Bools, wall: Bools) -> Floats:
     """Least fluxes to put through faces so that every cell lets out what it lets in."""
     from scipy.sparse import coo_array
     from scipy.sparse.linalg import cg
 
     cells = len(outward)
-    left = -outward.sum(axis=1)
+    stopped = np.where(wall, -outward, 0.0)
+    left = -(outward + stopped).sum(axis=1)
     cell, face = np.nonzero(neighbor >= 0)
     other = neighbor[cell, face]
     open_cell = np.nonzero(opening)[0]
@@ -138,7 +147,7 @@ def _missing(outward: Floats, neighbor: Ints, opening: Bools) -> Floats:
     matrix = coo_array((values, (rows, columns)), shape=(cells, cells)).tocsr()
     size = float(np.abs(left).max(initial=0.0))
     if size <= _ROUNDING * float(np.abs(outward).max(initial=0.0)):
-        return np.zeros_like(outward)
+        return stopped
     diagonal = matrix.diagonal()
     if not opening.any() or (diagonal == 0).any():
         raise StageError("air is lost in the flow and no opening takes it; solve the flow again with --force solve")
@@ -150,4 +159,4 @@ def _missing(outward: Floats, neighbor: Ints, opening: Bools) -> Floats:
     potential = found * scale * size
     put = np.where(neighbor >= 0, potential[:, None] - potential[neighbor], 0.0)
     put[opening] = potential[open_cell]
-    return put
+    return put + stopped

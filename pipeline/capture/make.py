@@ -78,8 +78,7 @@ def _flow(results: "Results", progress: Progress) -> tuple[Cells, str, str]:
     if not folder.is_dir():
         raise StageError("the solved flow has no velocity to follow; solve it again with --force solve")
     air = results.case.flow
-    slips = getattr(air, "fiber_wall", "no_slip") == "slip"
-    length = SLIP_COEFFICIENT * air.flow().mean_free_path if slips else 0.0
+    length = SLIP_COEFFICIENT * air.flow().mean_free_path if air.fiber_wall == "slip" else 0.0
     cells, files = openfoam_cells(folder, results.read(FaceMesh), length)
     return cells, store.digest([store.file_digest(file) for file in files]), "openfoam"
 

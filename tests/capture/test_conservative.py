@@ -52,11 +52,26 @@ def test_no_cell_keeps_air_and_both_sides_of_a_face_agree_point_by_point() -> No
             assert one == pytest.approx(two, abs=1e-8 * float(np.linalg.norm(normal)))
 
 
+def test_a_wall_that_leaks_is_closed_and_the_outlet_takes_its_air() -> None:
+    points, tets = brick(np.zeros(3), np.ones(3), (2, 2, 2))
+    cells = sampled(points, tets, leaky)
+    corners = cells.position[cells.nodes[:, :4]]
+    low, high = (corners[:, :, 2] == z for z in (0.0, 1.0))
+    # the faces against each vertex whose three corners lie there
+    wall, opening = ((on.sum(axis=1, keepdims=True) - on == 3) & (cells.neighbor < 0) for on in (low, high))
+    found = conserved(cells.nodes, cells.position, leaky(cells.position), cells.neighbor, opening, wall)
+    again = conserved(cells.nodes, cells.position, leaky(cells.position), cells.neighbor, opening, np.zeros_like(wall))
+    # no air comes in any more: what goes out is the bubble's nothing
+    speed = [np.abs(each.flux[..., 2]).max() for each in (found, again)]
+    assert speed[0] < 0.5 * speed[1]
+
+
 def test_a_velocity_without_divergence_stays_as_it_is() -> None:
     points, tets = brick(np.zeros(3), np.ones(3), (2, 1, 2))
     cells = sampled(points, tets, quadratic)
     velocity = quadratic(cells.position)
-    found = conserved(cells.nodes, cells.position, velocity, cells.neighbor, np.zeros(cells.neighbor.shape, bool))
+    no_face = np.zeros(cells.neighbor.shape, bool)
+    found = conserved(cells.nodes, cells.position, velocity, cells.neighbor, no_face, no_face)
     assert found.changed < 1e-12
 
 
@@ -65,4 +80,4 @@ def test_air_that_nothing_takes_is_an_error() -> None:
     cells = sampled(points, tets, quadratic)
     closed = np.zeros(cells.neighbor.shape, bool)
     with pytest.raises(StageError, match="no opening takes it"):
-        conserved(cells.nodes, cells.position, leaky(cells.position), cells.neighbor, closed)
+        conserved(cells.nodes, cells.position, leaky(cells.position), cells.neighbor, closed, closed)
