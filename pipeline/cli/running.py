@@ -60,10 +60,15 @@ def _next_steps(folder: Path) -> list[str]:
     page = folder / "report" / PAGE
     if page.is_file():
         steps.append(f"  read it:    {page}")
+    solved, flow = (folder / "solve" / "solution.json").is_file(), folder / "solve" / "flow.vtu"
     openfoam, vtk = folder / "export" / "openfoam", folder / "export" / "vtk"
+    if not solved and (folder / "tetmesh").is_dir():
+        steps.append(f"  solve it:   fibertwin solve {folder}")
     if openfoam.is_dir():
-        steps.append(f"  solve it:   cd {openfoam} && ./Allrun")
-    if vtk.is_dir():
+        steps.append(f"  your own:   {openfoam} is a case for OpenFOAM (./Allrun)")
+    if flow.is_file():
+        steps.append(f"  look at it: paraview {flow}")
+    elif vtk.is_dir():
         steps.append(f"  look at it: paraview {next(vtk.glob('*.vtm'), vtk)}")
     if (folder / "mat").is_dir():
         steps.append(f"  turn it:    fibertwin view {folder}   (or --html scene.html, for any browser)")

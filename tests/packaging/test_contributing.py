@@ -28,7 +28,8 @@ count = 3
 @pytest.fixture
 def copy(tmp_path: Path) -> Path:
     for name in ("pipeline", "cases"):
-        shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
+        # with what numba compiled, which takes a minute to make and holds for files of the same time and size
+        shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("*.pyc", "sources-*.json"))
     (tmp_path / "case.toml").write_text(CASE)
     return tmp_path
 
@@ -182,4 +183,76 @@ def toy(solidity):
     done = fibertwin(copy, *words, "--pressure-model", "toy")
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["pressure_drop"]["toy"] > 0
+    assert '"toy"' in fibertwin(copy, "schema").stdout
+
+
+def test_an_engine_is_a_room_and_a_line(copy: Path) -> None:
+    added(copy, "mesh/engines/toy/__init__.py", "")
+    added(
+        copy, "mesh/engines/toy/engine.py", """
+from pydantic import Field
+
+from pipeline.mesh.engines.engine import Engine, EngineSettings
+
+
+class ToySettings(EngineSettings):
+    \"\"\"What only the toy reads.\"\"\"
+
+    coarser: float = Field(default=1.5, description="How much longer its edges are.")
+
+
+def _mesh(domain, settings, progress, folder):
+    from pipeline.mesh.engines.lattice.engine import LATTICE
+
+    coarse = settings.changed(engine="lattice", edge=settings.edge * settings.own(ToySettings).coarser)
+    return LATTICE.mesh(domain, coarse, progress, folder)
+
+
+TOY = Engine("toy", "a lattice with longer edges", ToySettings, _mesh, "lower tetmesh.edge", lambda settings: ())
+""",
+    )  # fmt: skip
+    registered(
+        copy, "mesh/engines/registry.py", "from pipeline.mesh.engines.snappy.engine",
+        "from pipeline.mesh.engines.toy.engine import TOY\n",
+    )  # fmt: skip
+    registry = copy / "pipeline/mesh/engines/registry.py"
+    assert registry.read_text().count("(TETWILD, LATTICE, SNAPPY)") == 1
+    registry.write_text(registry.read_text().replace("(TETWILD, LATTICE, SNAPPY)", "(TETWILD, LATTICE, SNAPPY, TOY)"))
+    cells = {}
+    for coarser in ("1.0", "1.5"):
+        words = ("--set", "tetmesh.engine=toy", "--set", f"tetmesh.toy.coarser={coarser}", "--json")
+        done = fibertwin(copy, "run", "case.toml", "--until", "tetmesh", *words)
+        assert done.returncode == 0, done.stderr
+        stages = {stage["stage"]: stage for stage in json.loads(done.stdout)["stages"]}
+        cells[coarser] = stages["tetmesh"]["counts"]["cells"]
+    assert stages["tetmesh"]["why"] == ["tetmesh.toy.coarser changed from 1.0 to 1.5"]
+    assert cells["1.5"] < cells["1.0"]
+    foreign = fibertwin(copy, "run", "case.toml", "--set", "tetmesh.toy.coarser=2")
+    assert (foreign.returncode, "toy" in foreign.stderr) == (2, True)
+
+
+def test_a_format_is_a_file_and_a_line(copy: Path) -> None:
+    added(
+        copy, "export/formats/toy.py", """
+from pipeline.export.formats.format import Format
+
+
+def write(mesh, folder, order):
+    lines = (" ".join(map(repr, point)) for point in mesh.points.tolist())
+    (folder / "points.toy").write_text("\\n".join(lines))
+
+
+FORMAT = Format("toy", (".toy",), patches="lost", write=write)
+""",
+    )  # fmt: skip
+    registered(copy, "export/formats/registry.py", "    *UNAVAILABLE,\n", "    toy.FORMAT,\n")
+    registered(
+        copy, "export/formats/registry.py", "from pipeline.export.formats.unavailable",
+        "from pipeline.export.formats import toy\n",
+    )  # fmt: skip
+    words = ("--set", "tetmesh.engine=lattice", "--set", 'export.formats=["toy"]')
+    done = fibertwin(copy, "run", "case.toml", "--until", "export", *words)
+    assert done.returncode == 0, done.stderr
+    quality = json.loads((copy / "runs/case/quality/quality.json").read_text())
+    assert len((copy / "runs/case/export/toy/points.toy").read_text().splitlines()) == quality["points"]
     assert '"toy"' in fibertwin(copy, "schema").stdout

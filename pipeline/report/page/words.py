@@ -191,15 +191,17 @@ def steps(content: Results) -> list[Step]:
             )
         )
     exported = content.manifests().get("export", {}).get("counts", {}).get("formats", ())
-    if "openfoam" in exported and content.get(Solution) is None:
-        found.append(Step("Solve the flow with OpenFOAM.", f"cd {folder}/export/openfoam && ./Allrun"))
+    if content.get(FaceMesh) is not None and content.get(Solution) is None:
+        found.append(Step("Solve the flow.", f"fibertwin solve {folder}"))
     if content.get(Mat) is not None:
         found.append(Step("Turn the geometry and the mesh in a window.", f"fibertwin view {folder}"))
         found.append(
             Step("Send them as one file that turns in any browser.", f"fibertwin view {folder} --html scene.html")
         )
-    if "vtk" in exported:
-        found.append(Step("Open all fields in ParaView.", f"paraview {folder}/export/vtk/mesh.vtm"))
+    if (content.folder / "solve" / "flow.vtu").is_file():
+        found.append(Step("Open velocity and pressure in ParaView.", f"paraview {folder}/solve/flow.vtu"))
+    elif "vtk" in exported:
+        found.append(Step("Open the mesh and its quality in ParaView.", f"paraview {folder}/export/vtk/mesh.vtm"))
     if comparison is not None:
         found.append(
             Step(
