@@ -21,13 +21,15 @@ $(READY): pyproject.toml constraints.txt
 	@$(PYTHON) -m venv $(VENV) \
 	  || { echo "no virtual environment could be made; on Debian: apt-get install python3-venv"; exit 1; }
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	@echo "compiling the loops of the numerics, once"
+	@$(BIN)/fibertwin run smoke --until solve --out build/first --quiet
 	@touch $(READY)
 
 case: setup  ## Run a case end to end into runs/<its name>
 	$(BIN)/fibertwin run $(CASE)
 
 test: setup  ## Run the tests (those that need OpenFOAM are skipped where it is missing)
-	$(BIN)/pytest
+	$(BIN)/pytest -n auto --dist loadfile
 
 test-slow: setup  ## Run the tests that take minutes
 	$(BIN)/pytest -m slow --timeout 3600

@@ -32,10 +32,26 @@ if TYPE_CHECKING:
     from pipeline.mat.generate import generate as generate
     from pipeline.mat.measures import measure as measure
     from pipeline.mesh.fill import fill as fill
+    from pipeline.nouns.comparison import Comparison as Comparison
+    from pipeline.nouns.domain import FluidDomain as FluidDomain
+    from pipeline.nouns.fibers import Mat as Mat
+    from pipeline.nouns.flow import Solution as Solution
+    from pipeline.nouns.flow_field import FlowField as FlowField
+    from pipeline.nouns.mesh import FaceMesh as FaceMesh
+    from pipeline.nouns.quality import QualityReport as QualityReport
+    from pipeline.nouns.surface import Surface as Surface
     from pipeline.quality.judge import judge as judge
     from pipeline.surface.union import unite as unite
 
 _HOMES = {
+    "Comparison": "pipeline.nouns.comparison",
+    "FaceMesh": "pipeline.nouns.mesh",
+    "FlowField": "pipeline.nouns.flow_field",
+    "FluidDomain": "pipeline.nouns.domain",
+    "Mat": "pipeline.nouns.fibers",
+    "QualityReport": "pipeline.nouns.quality",
+    "Solution": "pipeline.nouns.flow",
+    "Surface": "pipeline.nouns.surface",
     "Case": "pipeline.case",
     "Run": "pipeline.line.run",
     "compare": "pipeline.analytics.models.comparison",
@@ -50,8 +66,31 @@ _HOMES = {
     "run": "pipeline.line.run",
     "unite": "pipeline.surface.union",
 }
-__all__ = ["Case", "Run", "compare", "enclose", "fill", "generate", "judge", "measure", "predict", "read_case"]
-__all__ += ["read_mesh", "run", "unite"]
+__all__ = [
+    "Case",
+    "Comparison",
+    "FaceMesh",
+    "FlowField",
+    "FluidDomain",
+    "Mat",
+    "QualityReport",
+    "Run",
+    "Solution",
+    "Surface",
+]
+__all__ += [
+    "compare",
+    "enclose",
+    "fill",
+    "generate",
+    "judge",
+    "measure",
+    "predict",
+    "read_case",
+    "read_mesh",
+    "run",
+    "unite",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -11,7 +11,6 @@ from pipeline.errors import CaseError, StageError
 from pipeline.line.places import disk_trouble_explained, own_file, own_folder
 from pipeline.line.run import Run, report
 from pipeline.nouns.fibers import Mat
-from pipeline.report.stage import PAGE
 from pipeline.report.views.painter import possible
 from pipeline.report.views.render import Painting, screenless
 from pipeline.report.views.scenes import SCENES, Subject, show
@@ -28,7 +27,7 @@ def write_page(folder: Path, quiet: bool) -> None:
     """Write a run's page and say where it is."""
     out = Console()
     with listening(out, quiet) as tell:
-        page = report(folder, tell) / PAGE
+        page = report(folder, tell)
     if not quiet:
         out.print(str(page), markup=False, highlight=False, soft_wrap=True)
 

@@ -19,6 +19,7 @@ from pipeline.line.stages import LINE
 from pipeline.line.store import CASE
 from pipeline.machine import peak_memory
 from pipeline.progress import Progress, silent
+from pipeline.report.stage import PAGE
 
 STAGES = tuple(stage.name for stage in LINE)
 LAST = [stage.name for stage in LINE if not stage.asked][-1]
@@ -201,7 +202,7 @@ def report(folder: Path, progress: Progress = silent) -> Path:
     Returns
     -------
     Path
-        Folder of the page.
+        The page.
 
     Raises
     ------
@@ -210,7 +211,7 @@ def report(folder: Path, progress: Progress = silent) -> Path:
     """
     case = Run.opened(folder).case
     with places.locked(folder):
-        return _step(LINE[-1], case, folder, True, progress).folder
+        return _step(LINE[-1], case, folder, True, progress).folder / PAGE
 
 
 def wanted(case: Case, until: str) -> list[Stage]:

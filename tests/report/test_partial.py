@@ -10,7 +10,6 @@ import pytest
 from pipeline.line.run import Run, report, run
 from pipeline.nouns.fibers import Mat
 from pipeline.nouns.surface import Surface
-from pipeline.report.stage import PAGE
 from pipeline.report.views.render import Pictures
 from tests.report.contents import CASE
 from tests.report.pages import read
@@ -26,7 +25,7 @@ def _no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_run_until_its_mat_has_a_report_of_its_mat(tmp_path: Path) -> None:
     run(CASE, tmp_path, until="mat")
-    page = read((report(tmp_path) / PAGE).read_text(encoding="utf-8"))
+    page = read(report(tmp_path).read_text(encoding="utf-8"))
     assert {"mat", "provenance"} <= set(page.values("id"))
     assert "mesh" not in page.values("id")
 
@@ -39,7 +38,7 @@ def test_results_of_another_case_are_left_out_and_named(tmp_path: Path) -> None:
     assert content.left_out == ("surface", "enclosure")
     assert content.get(Surface) is None
     assert content.get(Mat) is not None
-    page = read((report(tmp_path) / PAGE).read_text(encoding="utf-8"))
+    page = read(report(tmp_path).read_text(encoding="utf-8"))
     assert any("surface, enclosure" in text for text in page.text)
 
 
