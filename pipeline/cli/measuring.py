@@ -12,7 +12,7 @@ from rich.console import Console
 
 from pipeline.cli.tables import plain_table
 from pipeline.errors import CaseError
-from pipeline.line.store import disk_trouble_explained
+from pipeline.line.places import disk_trouble_explained
 from pipeline.micrograph.case import case_of
 from pipeline.micrograph.measure import Interval, Measured, measure
 from pipeline.micrograph.page import facts, write_page
