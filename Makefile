@@ -7,7 +7,7 @@ READY  := $(VENV)/.ready
 COUNT  ?= 200
 
 .DEFAULT_GOAL := help
-.PHONY: help setup case test test-slow fuzz check bench verify docs clean
+.PHONY: help setup case test test-slow fuzz check bench verify docs constraints clean
 
 help:  ## Say what there is
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-10s %s\n", $$1, $$2}'
@@ -58,6 +58,12 @@ verify: setup  ## Solve arrays and mats, and write what docs/verification.md sho
 docs: setup  ## Build the site of docs/ into build/site, with the notebook run and the gallery drawn anew
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[docs]'
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --site-dir build/site
+
+constraints:  ## Renew constraints.txt: the newest versions that pip finds, in an environment of their own
+	@$(PYTHON) -m venv build/constraints
+	build/constraints/bin/python -m pip install --quiet --disable-pip-version-check --upgrade --editable '.[dev,docs]'
+	@echo "# The versions that the tests were run with; \`make setup\` installs just these, \`make constraints\` renews them." > constraints.txt
+	build/constraints/bin/python -m pip freeze --exclude-editable >> constraints.txt
 
 clean:  ## Remove what can be made again (runs/ is kept)
 	rm -rf $(VENV) .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks .import_linter_cache dist build
