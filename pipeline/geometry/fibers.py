@@ -1,4 +1,4 @@
-"""Distance from points to fibers: cylinders about straight pieces, round at bends, flat or round at their ends.
+"""Distance from any place to the nearest fibers, exact and quick: pieces sorted into bins.
 
 Compiled by numba: imported only where a mesh is made.
 """
@@ -12,7 +12,242 @@ import numpy as np
 import numpy.typing as npt
 
 from pipeline.geometry.compiled import compiled
-from pipeline.geometry.triangles import Floats
+from pipeline.geometry.cylinders import away, distance, table
+from pipeline.geometry.triangles import Floats, Ints
+
+Bools = npt.NDArray[np.bool_]
+Members = npt.NDArray[np.int32]
+
+# pieces, which of their ends are flat, fiber of each, reach of each; lower corner, width and counts of the bins; first
+# member of each bin, members
+Field = tuple[Floats, Bools, Ints, Floats, Floats, Floats, Ints, Ints, Members]
+
+FAR = 1e30
+"""Distance where every fiber is beyond its reach."""
+_MOST_BINS = 4_000_000
+_NEWTON = 12  # steps to a surface; three suffice unless two fibers take turns
+_STEEPEST = 0.05  # least squared share of the gradient along which a point may move
+
+
+@compiled
+def _members(
+    pieces: Floats, flat: Bools, reach: Floats, lower: Floats, width: Floats, counts: Ints
+) -> tuple[Ints, Members]:
+    """List the pieces within their reach of each bin."""
+    half = 0.5 * math.sqrt((width**2).sum())
+    total = counts[0] * counts[1] * counts[2]
+    first = np.zeros(total + 1, np.int64)
+    members = np.empty(0, np.int32)
+    following = first[:-1].copy()
+    low, high = np.empty(3, np.int64), np.empty(3, np.int64)
+    for filling in range(2):
+        last = np.full(total, -1, np.int32)
+        for k in range(len(pieces)):
+            margin = pieces[k, 7] + reach[k]
+            # a long slanted piece would be looked for all over the box around it
+            parts = 1 + int(pieces[k, 6] / max(2.0 * margin, 4.0 * width.min()))
+            step = pieces[k, 6] / parts
+            for part in range(parts):
+                inside = True
+                for axis in range(3):
+                    a = pieces[k, axis] + part * step * pieces[k, 3 + axis]
+                    b = a + step * pieces[k, 3 + axis]
+                    low[axis] = max(0, math.floor((min(a, b) - margin - lower[axis]) / width[axis]))
+                    high[axis] = min(counts[axis] - 1, math.floor((max(a, b) + margin - lower[axis]) / width[axis]))
+                    inside &= low[axis] <= high[axis]
+                if not inside:
+                    continue
+                for i in range(low[0], high[0] + 1):
+                    x = lower[0] + (i + 0.5) * width[0]
+                    for j in range(low[1], high[1] + 1):
+                        y = lower[1] + (j + 0.5) * width[1]
+                        for m in range(low[2], high[2] + 1):
+                            place = (i * counts[1] + j) * counts[2] + m
+                            if last[place] == k:
+                                continue
+                            z = lower[2] + (m + 0.5) * width[2]
+                            if distance(x, y, z, pieces, flat, k) <= half + reach[k]:
+                                last[place] = k
+                                if filling:
+                                    members[following[place]] = k
+                                    following[place] += 1
+                                else:
+                                    first[place + 1] += 1
+        if not filling:
+            first = np.cumsum(first)
+            following = first[:-1].copy()
+            members = np.empty(first[-1], np.int32)
+    return first, members
+
+
+@compiled
+def _bin(x: float, y: float, z: float, field: Field) -> int:
+    lower, width, counts = field[4], field[5], field[6]
+    i = min(max(int((x - lower[0]) / width[0]), 0), counts[0] - 1)
+    j = min(max(int((y - lower[1]) / width[1]), 0), counts[1] - 1)
+    m = min(max(int((z - lower[2]) / width[2]), 0), counts[2] - 1)
+    return int((i * counts[1] + j) * counts[2] + m)
+
+
+@compiled
+def nearest(x: float, y: float, z: float, field: Field) -> tuple[float, int]:
+    """Distance to the nearest piece, and its row; FAR and -1 where every piece is beyond its reach."""
+    pieces, flat, first, members = field[0], field[1], field[7], field[8]
+    place = _bin(x, y, z, field)
+    best, which = FAR, -1
+    for n in range(first[place], first[place + 1]):
+        found = distance(x, y, z, pieces, flat, members[n])
+        if found < best:
+            best, which = found, members[n]
+    return best, which
+
+
+@compiled
+def _at(points: Floats, field: Field) -> tuple[Floats, Ints]:
+    found, which = np.empty(len(points)), np.empty(len(points), np.int64)
+    for n in range(len(points)):
+        found[n], which[n] = nearest(points[n, 0], points[n, 1], points[n, 2], field)
+    return found, which
+
+
+@compiled
+def _on_surface(points: Floats, free: Floats, most: Floats, field: Field) -> tuple[Floats, Bools]:
+    """Move points onto the surface along the gradient, or leave them."""
+    pieces, flat = field[0], field[1]
+    result = points.copy()
+    done = np.zeros(len(points), np.bool_)
+    for n in range(len(points)):
+        x, y, z = points[n, 0], points[n, 1], points[n, 2]
+        for _ in range(_NEWTON):
+            value, k = nearest(x, y, z, field)
+            if k < 0:
+                break
+            tiny = 1e-9 * pieces[k, 7]
+            if abs(value) < tiny:
+                done[n] = True
+                break
+            gx, gy, gz = away(x, y, z, pieces, flat, k)
+            gx, gy, gz = free[n, 0] * gx, free[n, 1] * gy, free[n, 2] * gz
+            size = gx * gx + gy * gy + gz * gz
+            # along a plane that the surface hardly crosses a point would run far
+            if size < _STEEPEST:
+                break
+            x, y, z = x - value / size * gx, y - value / size * gy, z - value / size * gz
+            far = (x - points[n, 0]) ** 2 + (y - points[n, 1]) ** 2 + (z - points[n, 2]) ** 2
+            if far > most[n] ** 2:
+                break
+        if done[n]:
+            result[n, 0], result[n, 1], result[n, 2] = x, y, z
+    return result, done
+
+
+@compiled
+def _crossings(outside: Floats, inside: Floats, field: Field) -> Floats:
+    pieces = field[0]
+    result = np.empty_like(outside)
+    for n in range(len(outside)):
+        ax, ay, az = outside[n, 0], outside[n, 1], outside[n, 2]
+        lx, ly, lz = inside[n, 0] - ax, inside[n, 1] - ay, inside[n, 2] - az
+        a, b, share = 0.0, 1.0, 0.5
+        fa, _ = nearest(ax, ay, az, field)
+        fb, k = nearest(ax + lx, ay + ly, az + lz, field)
+        fa = min(fa, 1e3 * math.sqrt(lx * lx + ly * ly + lz * lz))  # a place beyond all reach is no number to divide by
+        tiny = 1e-9 * pieces[k, 7]
+        for turn in range(60):
+            # by the chord, and every fourth time by halves, where the distance bends
+            share = 0.5 * (a + b) if turn % 4 == 3 else a + (b - a) * fa / (fa - fb)
+            value, _ = nearest(ax + share * lx, ay + share * ly, az + share * lz, field)
+            if abs(value) < tiny:
+                break
+            if value > 0.0:
+                a, fa = share, value
+            else:
+                b, fb = share, value
+        result[n, 0], result[n, 1], result[n, 2] = ax + share * lx, ay + share * ly, az + share * lz
+    return result
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class FiberDistance:
+    """Signed distance to the nearest fiber, negative inside, exact at any place within the fibers' reach.
+
+    Parameters
+    ----------
+    field : tuple
+        What the compiled functions take.
+    """
+
+    field: Field
+
+    @classmethod
+    def about(
+        cls,
+        start: Floats,
+        end: Floats,
+        radius: Floats,
+        flat: Bools,
+        fiber: Ints,
+        reach: Floats,
+        lower: Floats,
+        upper: Floats,
+    ) -> "FiberDistance":
+        """Sort the pieces of fibers into the bins of a box.
+
+        Parameters
+        ----------
+        start, end : (n, 3) arrays
+            Of the pieces' axes.
+        radius : (n,) array
+        flat : (n, 2) bool array
+            Whether a piece ends flat at its start and at its end; else it ends in half a ball.
+        fiber : (n,) int array
+            Fiber that each piece belongs to.
+        reach : (n,) array
+            Distance from each piece beyond which it does not matter.
+        lower, upper : (3,) arrays
+            The box; places outside count to the bins at its planes.
+        """
+        pieces = table(start, end, radius)
+        size = upper - lower
+        width = max(float(np.median(radius)), float(np.prod(size) / _MOST_BINS) ** (1.0 / 3.0))
+        counts = np.maximum(1, np.ceil(size / width)).astype(np.int64)
+        widths = size / counts
+        first, members = _members(pieces, flat, reach, lower, widths, counts)
+        return cls((pieces, flat, fiber.astype(np.int64), reach, lower, widths, counts, first, members))
+
+    def at(self, points: Floats) -> Floats:
+        """Distance at each point, (n,) array."""
+        return self.with_piece(points)[0]
+
+    def with_piece(self, points: Floats) -> tuple[Floats, Ints]:
+        """Distance at each point, (n,) array, and the piece it is the distance to, -1 beyond reach."""
+        found, piece = _at(points, self.field)
+        return found, piece
+
+    def on_surface(self, points: Floats, free: Floats, most: Floats) -> tuple[Floats, Bools]:
+        """Move points onto the surface along the gradient of the distance.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+        free : (n, 3) array of 0 and 1
+            Along which axes each may move.
+        most : (n,) array
+            A point that would move farther stays where it is.
+
+        Returns
+        -------
+        points : (n, 3) array
+        done : (n,) bool array
+            Which lie on the surface now.
+        """
+        moved, done = _on_surface(points, free, most, self.field)
+        return moved, done
+
+    def crossings(self, outside: Floats, inside: Floats) -> Floats:
+        """Where the lines from points outside to points inside a fiber meet its surface, (n, 3) array."""
+        found: Floats = _crossings(outside, inside, self.field)
+        return found
 
 
 @compiled
@@ -46,227 +281,6 @@ def to_piece(
     if flat1:
         aside = max(aside, along - length)
     return aside
-
-
-@compiled
-def _lattice_distance(
-    start: Floats,
-    end: Floats,
-    radius: Floats,
-    flat: npt.NDArray[np.bool_],
-    origin: Floats,
-    step: Floats,
-    shape: tuple[int, int, int],
-    reach: float,
-) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.int32]]:
-    """Distance from every lattice point to the nearest piece, and which one that is; -1 where all are beyond reach."""
-    distance = np.full(shape, np.float32(reach))
-    nearest = np.full(shape, np.int32(-1))
-    low, high = np.empty(3, np.int64), np.empty(3, np.int64)
-    for piece in range(len(start)):
-        for axis in range(3):
-            margin = radius[piece] + reach
-            a = min(start[piece, axis], end[piece, axis]) - margin
-            b = max(start[piece, axis], end[piece, axis]) + margin
-            low[axis] = max(0, math.ceil((a - origin[axis]) / step[axis]))
-            high[axis] = min(shape[axis] - 1, math.floor((b - origin[axis]) / step[axis]))
-        for i in range(low[0], high[0] + 1):
-            x = origin[0] + i * step[0]
-            for j in range(low[1], high[1] + 1):
-                y = origin[1] + j * step[1]
-                for k in range(low[2], high[2] + 1):
-                    z = origin[2] + k * step[2]
-                    found = to_piece(x, y, z, start[piece], end[piece], radius[piece], flat[piece, 0], flat[piece, 1])
-                    if found < distance[i, j, k]:
-                        distance[i, j, k] = found
-                        nearest[i, j, k] = piece
-    return distance, nearest
-
-
-# start, end, radius and flat of the pieces; origin and step of the lattice; nearest piece of each of its points; reach
-_Field = tuple[Floats, Floats, Floats, npt.NDArray[np.bool_], Floats, Floats, npt.NDArray[np.int32], float]
-
-
-@compiled
-def _place(x: float, y: float, z: float, field: _Field) -> tuple[float, int]:
-    """Distance at any place and the piece it is the distance to, among those nearest at the lattice points around."""
-    start, end, radius, flat, origin, step, nearest, reach = field
-    ci = round((x - origin[0]) / step[0])
-    cj = round((y - origin[1]) / step[1])
-    ck = round((z - origin[2]) / step[2])
-    best, which, last = reach, -1, -1
-    for i in range(max(0, ci - 1), min(nearest.shape[0], ci + 2)):
-        for j in range(max(0, cj - 1), min(nearest.shape[1], cj + 2)):
-            for k in range(max(0, ck - 1), min(nearest.shape[2], ck + 2)):
-                piece = nearest[i, j, k]
-                if piece < 0 or piece == last:
-                    continue
-                last = piece
-                found = to_piece(x, y, z, start[piece], end[piece], radius[piece], flat[piece, 0], flat[piece, 1])
-                if found < best:
-                    best, which = found, piece
-    return best, which
-
-
-@compiled
-def _local(x: float, y: float, z: float, field: _Field) -> float:
-    return _place(x, y, z, field)[0]
-
-
-@compiled
-def _places(points: Floats, field: _Field) -> tuple[Floats, npt.NDArray[np.int64]]:
-    distance, which = np.empty(len(points)), np.empty(len(points), np.int64)
-    for n in range(len(points)):
-        distance[n], which[n] = _place(points[n, 0], points[n, 1], points[n, 2], field)
-    return distance, which
-
-
-@compiled
-def _snapped(points: Floats, free: Floats, leash: float, field: _Field) -> tuple[Floats, npt.NDArray[np.bool_]]:
-    result = points.copy()
-    done = np.zeros(len(points), np.bool_)
-    tiny = 1e-4 * field[5].min()
-    gradient = np.empty(3)
-    for n in range(len(points)):
-        p = points[n].copy()
-        for _ in range(8):
-            value = _local(p[0], p[1], p[2], field)
-            if abs(value) < 1e-3 * tiny:
-                break
-            for axis in range(3):
-                q = p.copy()
-                q[axis] += tiny
-                up = _local(q[0], q[1], q[2], field)
-                q[axis] -= 2 * tiny
-                gradient[axis] = free[n, axis] * (up - _local(q[0], q[1], q[2], field)) / (2 * tiny)
-            size = (gradient**2).sum()
-            # along a plane that the surface hardly crosses a point would run far
-            if size < 0.05:
-                break
-            p -= value / size * gradient
-        if abs(_local(p[0], p[1], p[2], field)) < tiny and ((p - points[n]) ** 2).sum() <= leash**2:
-            result[n] = p
-            done[n] = True
-    return result, done
-
-
-@compiled
-def _crossings(outside: Floats, inside: Floats, field: _Field) -> Floats:
-    result = np.empty_like(outside)
-    tiny = 1e-7 * field[5].min()
-    for n in range(len(outside)):
-        line = inside[n] - outside[n]
-        a, b, share = 0.0, 1.0, 0.5
-        fa = _local(outside[n, 0], outside[n, 1], outside[n, 2], field)
-        fb = _local(inside[n, 0], inside[n, 1], inside[n, 2], field)
-        for turn in range(60):
-            # by the chord, and every fourth time by halves, where the distance bends
-            share = 0.5 * (a + b) if turn % 4 == 3 else a + (b - a) * fa / (fa - fb)
-            p = outside[n] + share * line
-            value = _local(p[0], p[1], p[2], field)
-            if abs(value) < tiny:
-                break
-            if value > 0.0:
-                a, fa = share, value
-            else:
-                b, fb = share, value
-        result[n] = outside[n] + share * line
-    return result
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class FiberDistance:
-    """Signed distance to the nearest fiber, negative inside, quick at any place in a box.
-
-    `Nearest` means nearest at one of the 27 lattice points around a place: exact as long as the lattice is finer than
-    the fibers.
-
-    Parameters
-    ----------
-    field : tuple
-        What the compiled functions take.
-    on_lattice : float32 array
-        The distance at every lattice point.
-    source : (pieces,) int array
-        Which of the pieces given each of the field's pieces is a part of.
-    """
-
-    field: _Field
-    on_lattice: npt.NDArray[np.float32]
-    source: npt.NDArray[np.int64]
-
-    @classmethod
-    def about(
-        cls,
-        start: Floats,
-        end: Floats,
-        radius: Floats,
-        flat: npt.NDArray[np.bool_],
-        lower: Floats,
-        upper: Floats,
-        counts: tuple[int, int, int],
-        reach: float,
-    ) -> "FiberDistance":
-        """Measure the distance on a lattice in a box.
-
-        Parameters
-        ----------
-        start, end : (n, 3) arrays
-            Of the pieces' axes.
-        radius : (n,) array
-        flat : (n, 2) bool array
-            Whether a piece ends flat at its start and at its end; else it ends in half a ball.
-        lower, upper : (3,) arrays
-            The box.
-        counts : tuple of int
-            Intervals of the lattice along each axis.
-        reach : float
-            Distances beyond it are not told apart.
-        """
-        start, end, radius, flat, source = short_pieces(start, end, radius, flat)
-        step = (upper - lower) / np.array(counts)
-        shape = (counts[0] + 1, counts[1] + 1, counts[2] + 1)
-        distance, nearest = _lattice_distance(start, end, radius, flat, lower, step, shape, reach)
-        return cls((start, end, radius, flat, lower, step, nearest, reach), distance, source)
-
-    def thicker(self, by: float) -> "FiberDistance":
-        """Give the distance to fibers of larger radius; `on_lattice` stays that of the old ones."""
-        start, end, radius, flat, lower, step, nearest, reach = self.field
-        return FiberDistance((start, end, radius + by, flat, lower, step, nearest, reach), self.on_lattice, self.source)
-
-    def at(self, points: Floats) -> Floats:
-        """Distance at each point, (n,) array."""
-        return self.with_piece(points)[0]
-
-    def with_piece(self, points: Floats) -> tuple[Floats, npt.NDArray[np.int64]]:
-        """Distance at each point, (n,) array, and the field's piece it is the distance to, -1 beyond reach."""
-        found, piece = _places(points, self.field)
-        return found, piece
-
-    def snapped(self, points: Floats, free: Floats, leash: float) -> tuple[Floats, npt.NDArray[np.bool_]]:
-        """Move points onto the surface along the gradient of the distance.
-
-        Parameters
-        ----------
-        points : (n, 3) array
-        free : (n, 3) array of 0 and 1
-            Along which axes each may move.
-        leash : float
-            A point that would move farther stays where it is.
-
-        Returns
-        -------
-        points : (n, 3) array
-        done : (n,) bool array
-            Which lie on the surface now.
-        """
-        moved, done = _snapped(points, free, leash, self.field)
-        return moved, done
-
-    def crossings(self, outside: Floats, inside: Floats) -> Floats:
-        """Where the lines from points outside to points inside a fiber meet its surface, (n, 3) array."""
-        found: Floats = _crossings(outside, inside, self.field)
-        return found
 
 
 _LENGTH = 4.0  # of a short piece in radii: a long one would be looked for all over the box around it

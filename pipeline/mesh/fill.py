@@ -46,12 +46,12 @@ def fill(
             )
         tell("measuring the walls", 0.95)
         found = fidelity(mesh, domain)
-        if found.typical_deviation <= settings.deviation:
+        faults = found.faults(settings.deviation)
+        if not faults:
             return mesh, replace(measures, fidelity=found)
     raise StageError(
-        f"a hundredth of the fibers' walls is farther than {found.typical_deviation:.3g} diameters from the true "
-        f"fibers, allowed is {settings.deviation:g}; {engine.truer} (the edge is {settings.edge:g} diameters), or "
-        "raise tetmesh.deviation"
+        f"the mesh does not keep the fibers: {'; '.join(faults)}; {engine.truer} (the edge is {settings.edge:g} "
+        f"diameters), or raise tetmesh.deviation (now {settings.deviation:g})"
     )
 
 

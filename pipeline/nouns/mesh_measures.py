@@ -4,28 +4,7 @@
 
 from dataclasses import dataclass
 
-
-@dataclass(frozen=True, slots=True)
-class Fidelity:
-    """Distance between the mesh's walls and the true cylinders, weighted by area.
-
-    Parameters
-    ----------
-    mean_deviation : float [-]
-        Mean distance of the walls from the nearest cylinder, either way, in mean fiber diameters.
-    typical_deviation : float [-]
-        99 % of the walls' area is nearer than this, in mean fiber diameters.
-    largest_deviation : float [-]
-        Of all, in mean fiber diameters: found where fibers meet, and the sharp air between them is filled.
-    radius_error : tuple of float [-]
-        Of each fiber with walls in the duct, by number (0 for one without): how much its walls stand off its true
-        radius on average, relative; above 0 they stand outside.
-    """
-
-    mean_deviation: float
-    typical_deviation: float
-    largest_deviation: float
-    radius_error: tuple[float, ...]
+from pipeline.nouns.fidelity import Fidelity
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,7 +42,8 @@ def test_the_smoke_case_keeps_every_limit_and_its_walls_the_envelope() -> None:
     settings = TetmeshSettings(engine="tetwild", edge=0.8, largest_edge=2.0)
     mesh, measures = fill(domain, settings)
     assert judge(mesh).verdict == "pass"
-    assert abs(measures.volume_error) < 1e-4
+    # each fiber gets its own radius back; what is left is where fibers meet
+    assert abs(measures.volume_error) < 0.01
     assert measures.fidelity is not None
     # a polygon of ten corners with the circle's volume strays by 0.015 diameters itself
     assert measures.fidelity.typical_deviation < settings.own(TetwildSettings).envelope + 0.015

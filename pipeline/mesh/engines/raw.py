@@ -16,8 +16,8 @@ class RawMesh:
     points : (n, 3) array [m]
     tets : (m, 4) int array
         Positive; some points may belong to none.
-    leash : float [m]
-        How far mending may move a point of a fiber's wall.
+    leash : float [-]
+        How far mending may move a point off a fiber's wall, in that fiber's diameters.
     seconds : float [s]
     peak_memory : int [byte]
     """

@@ -7,9 +7,10 @@ import numpy as np
 from pipeline.errors import StageError
 from pipeline.geometry.tets import boundary, volumes
 from pipeline.mesh.boundary import assign
+from pipeline.mesh.distance import fiber_distance
 from pipeline.mesh.engines.raw import RawMesh
 from pipeline.mesh.improve.fit import fitted
-from pipeline.mesh.improve.settle import free_axes, settled
+from pipeline.mesh.improve.settle import Reaches, free_axes, settled
 from pipeline.mesh.settings import TetmeshSettings
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
@@ -20,20 +21,19 @@ from pipeline.progress import Progress
 
 _FITS = 2  # the second makes good what mending after the first moved
 _SLIDE = 0.2  # edges that it may move a vertex along its fiber
+_REACH = 3.0  # radii from a fiber beyond which it does not matter
 
 
 def finished(
-    raw: RawMesh, domain: FluidDomain, settings: TetmeshSettings, unit: float, tell: Progress
+    raw: RawMesh, domain: FluidDomain, settings: TetmeshSettings, tell: Progress
 ) -> tuple[FaceMesh, TetmeshMeasures]:
-    """Mend what an engine left, restore the fibers' volume, and check both.
+    """Mend what an engine left, give each fiber its radius back, and check.
 
     Parameters
     ----------
     raw : RawMesh
     domain : FluidDomain
     settings : TetmeshSettings
-    unit : float [m]
-        Mean fiber diameter.
     tell : Progress
 
     Returns
@@ -49,19 +49,22 @@ def finished(
     raw_error = _volume_error(points, tets, domain)
     tell("mending the worst cells", 0.6)
     limits = np.array(domain.box.lower), np.array(domain.box.upper)
-    slide = _SLIDE * settings.edge * unit
+    distance = fiber_distance(domain, _REACH * domain.radius)
+    reaches = Reaches(distance, 2.0 * domain.radius, raw.leash, _SLIDE * settings.edge)
     filled = 0.0
     for _ in range(_FITS):
-        points, tets, faulty, tips = settled(points, tets, domain, raw.leash, slide)
+        points, tets, faulty, tips = settled(points, tets, domain, reaches)
         filled += tips
         points, tets = used_points(points, tets)
         faces, _ = boundary(tets)
         walls = faces[assign(points, faces, domain.box, tolerance=0.0) == domain.patches.index(FIBERS)]
-        points = fitted(points, tets, walls, free_axes(points, domain.box), domain.volume, limits)
+        points = fitted(points, tets, walls, free_axes(points, domain.box), distance, limits)
     _check_volumes(points, tets, settings)
 
     faces, _ = boundary(tets)
-    mesh = TetMesh(points, tets, faces, assign(points, faces, domain.box, tolerance=0.0), domain.patches, domain.slab)
+    patch = assign(points, faces, domain.box, tolerance=0.0)
+    _check_patches(patch, domain, settings)
+    mesh = TetMesh(points, tets, faces, patch, domain.patches, domain.slab)
     measures = TetmeshMeasures(
         points=len(points),
         cells=len(tets),
@@ -85,6 +88,19 @@ def used_points(points: Floats, tets: Ints) -> tuple[Floats, Ints]:
 def _volume_error(points: Floats, tets: Ints, domain: FluidDomain) -> float:
     solid = domain.box.volume - domain.volume
     return float((domain.volume - volumes(points, tets).sum()) / solid)
+
+
+def _check_patches(patch: Ints, domain: FluidDomain, settings: TetmeshSettings) -> None:
+    empty = [name for number, name in enumerate(domain.patches) if not (patch == number).any()]
+    if FIBERS in empty:
+        thickest = 2.0 * float(domain.radius.max())
+        raise StageError(
+            f"the mesh resolves none of the {len(domain.radius)} fibers, the thickest {thickest * 1e6:.3g} um (fiber "
+            f"{int(domain.radius.argmax())} of {len(domain.radius)}), with an edge of {settings.edge:g} diameters; "
+            f"{settings.mesher.truer}"
+        )
+    if empty:
+        raise StageError(f"no air reaches {', '.join(empty)}: the fibers close the duct there; use a larger mat.side")
 
 
 def _check_volumes(points: Floats, tets: Ints, settings: TetmeshSettings) -> None:

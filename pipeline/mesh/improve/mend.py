@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from pipeline.geometry.adjacency import cells_at_vertices, neighbors
 from pipeline.geometry.compiled import compiled
-from pipeline.geometry.tets import FACES, volumes
+from pipeline.geometry.tets import FACES
 from pipeline.nouns.arrays import Floats, Ints
 
 Vector = tuple[float, float, float]
@@ -26,7 +26,7 @@ _AIM_WEIGHT = 0.06  # above the usual limit of 0.05; for tetrahedra it bounds th
 _AIM_DETERMINANT = 2e-3  # above the usual limit of 1e-3
 _EASE = 0.95  # fault from which a face counts: a mended face must not push its neighbor over the aim
 _HOPELESS = 1e5  # fault of a face whose cells lie on the same side of it; worse than any finite fault in use
-_SMALLEST = 1e-5  # least volume of a cell, in medians
+_THINNEST = 1e-5  # least volume of a cell, over a sixth of the cube of an edge
 _TRIALS = 40  # places tried per vertex and sweep
 _LARGEST_STEP = 0.35  # of the mean edge length at the vertex
 
@@ -98,12 +98,17 @@ def _fault(points: Floats, tets: Ints, across: Ints, cell: int, side: int) -> fl
 
 
 @compiled
-def _flatness(points: Floats, tets: Ints, cell: int, smallest: float) -> float:
-    """0 for a cell of at least the smallest volume, else above every fault, and the more the worse it is inverted."""
+def _flatness(points: Floats, tets: Ints, cell: int) -> float:
+    """0 for a cell of at least the least volume, else above every fault, and the more the worse it is inverted."""
     a = _corner(points, tets, cell, 0)
-    base = _cross(_minus(_corner(points, tets, cell, 1), a), _minus(_corner(points, tets, cell, 2), a))
-    volume = _dot(base, _minus(_corner(points, tets, cell, 3), a))
-    return 0.0 if volume >= smallest else 10.0 * _HOPELESS * (2.0 - volume / smallest)
+    b = _minus(_corner(points, tets, cell, 1), a)
+    c = _minus(_corner(points, tets, cell, 2), a)
+    d = _minus(_corner(points, tets, cell, 3), a)
+    # by its own size: the cells at a thin fiber are ten thousand times smaller than those at a thick one
+    longest = max(_dot(b, b), _dot(c, c), _dot(d, d))
+    volume = _dot(_cross(b, c), d)
+    least = _THINNEST * longest * math.sqrt(longest)
+    return 0.0 if volume >= least else 10.0 * _HOPELESS * (2.0 - volume / max(least, 1e-300))
 
 
 @compiled
@@ -135,13 +140,11 @@ def _indeterminacy(points: Floats, tets: Ints, across: Ints, cell: int) -> float
 
 
 @compiled
-def _cost_around(
-    points: Floats, tets: Ints, across: Ints, first: Ints, cells: Ints, vertex: int, smallest: float, stop: float
-) -> float:
+def _cost_around(points: Floats, tets: Ints, across: Ints, first: Ints, cells: Ints, vertex: int, stop: float) -> float:
     """Sum of squared excess faults of the cells at a vertex and of their faces; given up on reaching `stop`."""
     cost = 0.0
     for k in range(first[vertex], first[vertex + 1]):
-        cost += max(0.0, _flatness(points, tets, cells[k], smallest) - _EASE) ** 2
+        cost += max(0.0, _flatness(points, tets, cells[k]) - _EASE) ** 2
         cost += max(0.0, _indeterminacy(points, tets, across, cells[k]) - _EASE) ** 2
         for side in range(4):
             cost += max(0.0, _fault(points, tets, across, cells[k], side) - _EASE) ** 2
@@ -151,10 +154,10 @@ def _cost_around(
 
 
 @compiled
-def _update(points: Floats, tets: Ints, across: Ints, which: Ints, smallest: float, faults: Floats) -> None:
+def _update(points: Floats, tets: Ints, across: Ints, which: Ints, faults: Floats) -> None:
     """Measure some cells again: the flatness of each, or the worst fault of it and its faces."""
     for cell in which:
-        worst = max(_flatness(points, tets, cell, smallest), _indeterminacy(points, tets, across, cell))
+        worst = max(_flatness(points, tets, cell), _indeterminacy(points, tets, across, cell))
         for side in range(4):
             worst = max(worst, _fault(points, tets, across, cell, side))
         faults[cell] = worst
@@ -171,10 +174,9 @@ def _move(
     homes: Floats,
     leash: Floats,
     normals: Floats,
-    slide: float,
+    slide: Floats,
     free: Floats,
     directions: Floats,
-    smallest: float,
     low: Floats,
     high: Floats,
 ) -> Ints:
@@ -183,7 +185,7 @@ def _move(
     for number, vertex in enumerate(vertices):
         if leash[vertex] == 0.0 or free[vertex].max() == 0.0:
             continue
-        best = _cost_around(points, tets, across, first, cells, vertex, smallest, math.inf)
+        best = _cost_around(points, tets, across, first, cells, vertex, math.inf)
         if best == 0.0:
             continue
         place = points[vertex].copy()
@@ -193,7 +195,7 @@ def _move(
                 edge = points[tets[cells[k], j]] - place
                 length += math.sqrt((edge**2).sum())
                 count += 1
-        reach = min(_LARGEST_STEP * length / (0.75 * count), max(leash[vertex], slide))
+        reach = min(_LARGEST_STEP * length / (0.75 * count), max(leash[vertex], slide[vertex]))
         normal = normals[vertex]
         on_wall = (normal**2).sum() > 0.0
         for trial in range(len(directions)):
@@ -205,11 +207,11 @@ def _move(
             stray = points[vertex] - homes[vertex]
             off = (stray * normal).sum()
             # along the wall a vertex of a fiber may slide, since it stays on the fiber
-            far = (stray**2).sum() - off**2 > slide**2 if on_wall else (stray**2).sum() > leash[vertex] ** 2
+            far = (stray**2).sum() - off**2 > slide[vertex] ** 2 if on_wall else (stray**2).sum() > leash[vertex] ** 2
             far = far or abs(off) > leash[vertex]
             if far or (points[vertex] < low).any() or (points[vertex] > high).any():
                 continue
-            cost = _cost_around(points, tets, across, first, cells, vertex, smallest, best)
+            cost = _cost_around(points, tets, across, first, cells, vertex, best)
             if cost < best:
                 best = cost
                 place = points[vertex].copy()
@@ -234,13 +236,8 @@ def faults(points: Floats, tets: Ints, across: Ints) -> Floats:
     (m,) array
     """
     found = np.zeros(len(tets))
-    _update(points, tets, across, np.arange(len(tets)), smallest_volume(points, tets), found)
+    _update(points, tets, across, np.arange(len(tets)), found)
     return found
-
-
-def smallest_volume(points: Floats, tets: Ints) -> float:
-    """Six times the volume below which a cell counts as flat."""
-    return _SMALLEST * float(np.median(6.0 * volumes(points, tets)))
 
 
 def mended(
@@ -251,7 +248,7 @@ def mended(
     sweeps: int,
     limits: tuple[Floats, Floats],
     normals: Floats | None = None,
-    slide: float = 0.0,
+    slide: Floats | None = None,
     seed: int = 0,
 ) -> tuple[Floats, npt.NDArray[np.bool_]]:
     """Move vertices until no face is beyond the aim, or no move helps any more.
@@ -271,7 +268,7 @@ def mended(
         Lowest and highest coordinates of the box that no vertex may leave.
     normals : (n, 3) array, optional
         Outward unit normal of the wall at each vertex that may slide along it, else 0.
-    slide : float
+    slide : (n,) array, optional
         How far such a vertex may move along its wall; its leash bounds how far off it.
     seed : int
         Of the directions tried.
@@ -287,11 +284,11 @@ def mended(
     across = neighbors(tets)
     first, cells = cells_at_vertices(tets, len(points))
     rng = np.random.default_rng(seed)
-    smallest = smallest_volume(result, tets)
     homes = result.copy()
     along = np.zeros_like(result) if normals is None else normals
+    sliding = np.zeros(len(result)) if slide is None else slide
     found = np.zeros(len(tets))
-    _update(result, tets, across, np.arange(len(tets)), smallest, found)
+    _update(result, tets, across, np.arange(len(tets)), found)
     for _ in range(sweeps):
         directions = rng.standard_normal((_TRIALS, 3))
         directions /= np.linalg.norm(directions, axis=1, keepdims=True)
@@ -306,15 +303,14 @@ def mended(
             homes,
             leash,
             along,
-            slide,
+            sliding,
             free,
             directions,
-            smallest,
             *limits,
         )
         if len(moved) == 0:
             break
         touched = np.unique(np.concatenate([cells[first[vertex] : first[vertex + 1]] for vertex in moved]))
         beside = across[touched]
-        _update(result, tets, across, np.union1d(touched, beside[beside >= 0]), smallest, found)
+        _update(result, tets, across, np.union1d(touched, beside[beside >= 0]), found)
     return result, found > 1.0

@@ -5,6 +5,9 @@ Some cells in ten thousand are faulty: all work but looking for them is done on 
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
 import numpy as np
 import numpy.typing as npt
 
@@ -18,6 +21,9 @@ from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.patches import FIBERS
 
+if TYPE_CHECKING:
+    from pipeline.geometry.fibers import FiberDistance
+
 _SWEEPS = 20  # of mending; the last of them move next to nothing
 _FILLINGS = 8  # rounds of mending and filling crevices
 _PATIENCE = 3  # rounds before cells that cannot be mended are filled though a vertex of theirs could move
@@ -26,9 +32,33 @@ _FLAT = 0.9  # length of the summed area vectors at a vertex over the summed are
 _PASSES = 8  # over the whole mesh: what is filled may leave corners elsewhere
 
 
-def settled(
-    points: Floats, tets: Ints, domain: FluidDomain, wall_leash: float, slide: float
-) -> tuple[Floats, Ints, int, float]:
+@dataclass(frozen=True, eq=False, slots=True)
+class Reaches:
+    """How far a vertex of a wall may move, by the fiber next to it.
+
+    Parameters
+    ----------
+    distance : FiberDistance
+    diameter : (fibers,) array [m]
+    off, along : float
+        How far it may move off its wall and along it, in diameters.
+    """
+
+    distance: "FiberDistance"
+    diameter: Floats
+    off: float
+    along: float
+
+    def at(self, points: Floats) -> tuple[Floats, Floats]:
+        """Give how far points may move off the wall and along it, two (n,) arrays [m]."""
+        _, piece = self.distance.with_piece(points)
+        diameter = self.diameter[self.distance.field[2][np.maximum(piece, 0)]]
+        # a wall far from every fiber is nobody's: the thinnest decides
+        diameter = np.where(piece >= 0, diameter, self.diameter.min())
+        return self.off * diameter, self.along * diameter
+
+
+def settled(points: Floats, tets: Ints, domain: FluidDomain, reaches: Reaches) -> tuple[Floats, Ints, int, float]:
     """Mend and fill until no cell is faulty or nothing helps.
 
     Parameters
@@ -36,10 +66,8 @@ def settled(
     points : (n, 3) array [m]
     tets : (m, 4) int array
     domain : FluidDomain
-    wall_leash : float [m]
-        How far a vertex of a fiber may move off its wall.
-    slide : float [m]
-        How far it may move along it.
+    reaches : Reaches
+        How far a vertex of a fiber may move.
 
     Returns
     -------
@@ -71,7 +99,7 @@ def settled(
         cell, side = np.nonzero((across >= 0) & near[:, None])
         out = ~near[across[cell, side]]
         seam = np.sort(np.take_along_axis(tets[cell[out]], FACES[side[out]], axis=1), axis=1)
-        points, mended, tips = _settled_here(points, tets[near], seam, domain, wall_leash, slide)
+        points, mended, tips = _settled_here(points, tets[near], seam, domain, reaches)
         tets = np.concatenate([tets[~near], mended])
         filled += tips
     across = neighbors(tets)
@@ -82,7 +110,7 @@ def settled(
 
 
 def _settled_here(
-    points: Floats, tets: Ints, seam: Ints, domain: FluidDomain, wall_leash: float, slide: float
+    points: Floats, tets: Ints, seam: Ints, domain: FluidDomain, reaches: Reaches
 ) -> tuple[Floats, Ints, float]:
     """Settle a part of the mesh that ends at a seam, and give the state with the fewest faulty cells."""
     from pipeline.mesh.improve.mend import mended
@@ -97,9 +125,12 @@ def _settled_here(
         walls, at_wall = true_boundary(tets, seam)
         fibers = walls[assign(points, walls, domain.box, tolerance=0.0) == domain.patches.index(FIBERS)]
         leash = np.full(len(points), np.inf)
-        leash[fibers] = wall_leash
+        slide = np.zeros(len(points))
+        on_wall = np.unique(fibers)
+        leash[on_wall], slide[on_wall] = reaches.at(points[on_wall])
         # where a tip was filled the wall is no fiber's: its vertices may move
-        leash[loose] = np.maximum(slide, wall_leash)
+        loose = np.intersect1d(loose, on_wall)
+        leash[loose] = np.maximum(slide[loose], leash[loose])
         # the cells behind the seam do not know what happens here
         leash[tets[_with_three(tets, fixed, len(points))]] = 0.0
         points, faulty = mended(

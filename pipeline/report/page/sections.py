@@ -8,9 +8,10 @@ from pipeline.analytics.tables.rows import length
 from pipeline.line.results import Results
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.fibers import Mat
+from pipeline.nouns.fidelity import Fidelity
 from pipeline.nouns.mat_measures import MatMeasures
 from pipeline.nouns.mesh import FaceMesh
-from pipeline.nouns.mesh_measures import Fidelity, MeshingCost, TetmeshMeasures
+from pipeline.nouns.mesh_measures import MeshingCost, TetmeshMeasures
 from pipeline.nouns.section import Charts, Columns, Facts, Picture, Pictures, Section
 from pipeline.nouns.surface import Surface
 from pipeline.quality.kinds import kinds_in_words

@@ -17,7 +17,6 @@ from pipeline.solve.stokes.nodes import Nodes
 if TYPE_CHECKING:
     from pipeline.geometry.fibers import FiberDistance
 
-_STEP = 0.35  # of the lattice that finds the nearest fiber, in mean fiber diameters
 _REACH = 1.5  # mean fiber diameters; no wall is that far from every fiber
 _LEASH = 0.3  # how far a node may move, in lengths of its shortest edge
 _THINNEST = 0.2  # of a straight cell's volume: the least that a node's move, or a curved cell's Jacobian, may leave
@@ -85,9 +84,9 @@ def curve_walls(
     # numba takes half a second to load
     from pipeline.geometry.fibers import FiberDistance
 
-    counts = np.maximum(1, np.ceil((upper - lower) / _STEP)).astype(int).tolist()
+    reach = np.full(len(pieces), _REACH)
     distance = FiberDistance.about(
-        pieces.start, pieces.end, radius[pieces.fiber], pieces.flat, lower, upper, tuple(counts), _REACH
+        pieces.start, pieces.end, radius[pieces.fiber], pieces.flat, pieces.fiber, reach, lower, upper
     )
     free = ~(np.isclose(points, lower, atol=1e-7) | np.isclose(points, upper, atol=1e-7))
     length = np.linalg.norm(points[nodes.ends[:, 0]] - points[nodes.ends[:, 1]], axis=1)
@@ -96,12 +95,11 @@ def curve_walls(
     edge = np.unique(nodes.of_triangles(faces)[:, 3:]) - nodes.vertices
     middle = nodes.middles(moved)
     ends = nodes.ends[edge]
-    bent, done = distance.snapped(
-        middle[edge], (free[ends[:, 0]] | free[ends[:, 1]]).astype(np.float64), _LEASH * float(length.max())
+    bent, near = distance.on_surface(
+        middle[edge], (free[ends[:, 0]] | free[ends[:, 1]]).astype(np.float64), _LEASH * length[edge]
     )
-    near = np.linalg.norm(bent - middle[edge], axis=1) <= _LEASH * length[edge]
     offset = np.zeros_like(middle)
-    offset[edge] = np.where((done & near)[:, None], bent - middle[edge], 0.0)
+    offset[edge] = np.where(near[:, None], bent - middle[edge], 0.0)
     offset, curved = _straightened(moved, nodes, middle, offset)
     positions = np.concatenate([moved, middle + offset])
     wall = np.concatenate([corners, nodes.vertices + edge])
@@ -117,8 +115,7 @@ def _moved_vertices(
     shortest = np.full(nodes.vertices, np.inf)
     for end in nodes.ends.T:
         np.minimum.at(shortest, end, length)
-    onto, done = distance.snapped(points[corners], free[corners].astype(np.float64), _LEASH * float(length.max()))
-    near = done & (np.linalg.norm(onto - points[corners], axis=1) <= _LEASH * shortest[corners])
+    onto, near = distance.on_surface(points[corners], free[corners].astype(np.float64), _LEASH * shortest[corners])
     tets, before = nodes.cells[:, :4], volumes(points, nodes.cells[:, :4])
     moved = points.copy()
     moved[corners[near]] = onto[near]
@@ -154,7 +151,7 @@ def _straightened(points: Floats, nodes: Nodes, middle: Floats, offset: Floats) 
 def _true_normals(at: Floats, distance: "FiberDistance", pieces: Pieces, radius: Floats) -> tuple[Ints, Floats, Floats]:
     """Fiber, normal out of the air, and direction of the fiber at places; no normal where a place is on none."""
     off, found = distance.with_piece(at)
-    piece = distance.source[np.maximum(found, 0)]
+    piece = np.maximum(found, 0)
     start, line = pieces.start[piece], pieces.end[piece] - pieces.start[piece]
     length = np.linalg.norm(line, axis=1)
     axis = line / length[:, None]

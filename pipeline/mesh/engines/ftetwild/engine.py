@@ -49,7 +49,7 @@ def _mesh(
     from pipeline.mesh.improve.finish import finished
 
     unit = domain.mean_diameter
-    return finished(tetrahedralized(domain, settings, unit, tell), domain, settings, unit, tell)
+    return finished(tetrahedralized(domain, settings, unit, tell), domain, settings, tell)
 
 
 TETWILD = Engine(

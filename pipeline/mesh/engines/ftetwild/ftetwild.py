@@ -67,7 +67,7 @@ def tetrahedralized(domain: FluidDomain, settings: TetmeshSettings, unit: float,
         errors = _plane_errors(points, tets, domain)
         worst = max(errors, key=lambda name: abs(errors[name]))
         if abs(errors[worst]) <= _PLANE_ERROR:
-            return RawMesh(points, tets, _WALL_LEASH * envelope, raw.seconds, raw.peak_memory)
+            return RawMesh(points, tets, _WALL_LEASH * own.envelope, raw.seconds, raw.peak_memory)
         tell(f"the mesher lost part of {worst}: meshing again")
     raise StageError(
         f"the mesher lost part of the patch {worst} {_ATTEMPTS} times, whose area is off by {errors[worst]:+.2%} "

@@ -22,11 +22,10 @@ class LatticeSettings(EngineSettings):
 def _mesh(
     domain: "FluidDomain", settings: "TetmeshSettings", tell: "Progress", folder: Path | None
 ) -> "tuple[FaceMesh, TetmeshMeasures]":
-    from pipeline.mesh.engines.lattice.lattice import stuffed
+    from pipeline.mesh.engines.lattice.lattice import lattice_mesh
     from pipeline.mesh.improve.finish import finished
 
-    unit = domain.mean_diameter
-    return finished(stuffed(domain, settings, unit, tell), domain, settings, unit, tell)
+    return finished(lattice_mesh(domain, settings, tell), domain, settings, tell)
 
 
 LATTICE = Engine(

@@ -2,6 +2,7 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import itertools
 import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -9,9 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from pipeline.errors import StageError
-from pipeline.geometry.tets import boundary, volumes
-from pipeline.geometry.triangles import area_vectors
+from pipeline.geometry.tets import volumes
 from pipeline.machine import peak_memory
 from pipeline.mesh.distance import fiber_distance
 from pipeline.mesh.engines.limits import memory_allowed
@@ -23,29 +22,32 @@ from pipeline.progress import Progress
 
 if TYPE_CHECKING:
     from pipeline.geometry.fibers import FiberDistance
+    from pipeline.mesh.engines.lattice.octree import Octree
 
 _SNAP = 0.25  # cube edges between a vertex and the surface up to which the vertex moves onto it
-_LEASH = 2.0  # distances from the surface that a vertex may move, when it has to stay on a plane of the duct
-_WALL_LEASH = 0.02  # fiber diameters that mending may move a vertex of a wall
-_OFFSETS = 2  # rounds: the second finds the fibers' volume right to some thousandths
-_LEAST = 1e-3  # volume of a tetrahedron whose vertices have moved, in smallest cubes; there are 12 to a cube
-_LEVELS = 2  # doublings of the cubes' edge
-_BYTES = 40  # of memory for each lattice point, when the tetrahedra are made of a lattice that is mostly at its finest
+_LEASH = 0.02  # of its diameter that mending may move a vertex off a fiber
+_FARTHEST = 2.0  # distances from the surface that a vertex may move, when it has to stay on a plane of the duct
+_LEAST = 1e-3  # volume of a tetrahedron whose vertices have moved, in cubes; there are 12 to a cube
+_SHORTEST = 0.1  # diameters; a shorter fiber gets no smaller cubes
+_BYTES = 3000  # of memory for each cube, with all that is made of it
+_AIR = 0.02  # cubes between the surface and the center of a tetrahedron that is kept though all its corners lie there
+_THROUGH = 0.1  # cubes that the middle of its edges may lie in a fiber: chords do
+_THICK = 0.01  # volume of such a tetrahedron, in cubes
+_FINER = 1  # levels of smaller cubes where air is narrow
+_NARROW = 0.75  # cubes between walls that face each other
 
 
-def stuffed(domain: FluidDomain, settings: TetmeshSettings, unit: float, tell: Progress) -> RawMesh:
+def lattice_mesh(domain: FluidDomain, settings: TetmeshSettings, tell: Progress) -> RawMesh:
     """Fill the air with tetrahedra, whose vertices at the fibers lie on the true cylinders.
 
-    Cubes at the fibers have the edge `settings.edge`; away from them it doubles where `settings.growth` and
-    `settings.largest_edge` allow. Vertices near the surface move onto it, tetrahedra that still cross it are cut, and
-    what lies in the air is kept. The same case always gives the same mesh.
+    Cubes at a fiber have the edge `settings.edge` times its own diameter; away from it they double where
+    `settings.growth` and `settings.largest_edge` allow. Vertices near the surface move onto it, tetrahedra that still
+    cross it are cut, and what lies in the air is kept. The same case always gives the same mesh.
 
     Parameters
     ----------
     domain : FluidDomain
     settings : TetmeshSettings
-    unit : float [m]
-        Mean fiber diameter.
     tell : Progress
 
     Returns
@@ -63,78 +65,105 @@ def stuffed(domain: FluidDomain, settings: TetmeshSettings, unit: float, tell: P
     to the fibers in place of a sampled one, and vertices moved to the nearest point of the surface instead of along an
     edge: no edge is then cut nearer to its end than a vertex may move.
     """
-    # numba takes half a second to load, which no refused case file should cost
-    from pipeline.mesh.engines.lattice.cubes import lattice_tets
-    from pipeline.mesh.engines.lattice.octree import octree
-
     began = time.monotonic()
     lower, upper = np.array(domain.box.lower), np.array(domain.box.upper)
-    size = (upper - lower) / unit
-    counts = np.maximum(1, np.rint(size / settings.edge)).astype(np.int64)
-    _check_memory(counts, settings)
-    edge = float((size / counts).max())
-    sizes = _distances(edge, settings)
-    tell("measuring the distance to the fibers")
-    distance = fiber_distance(domain, unit, 2 * counts, max(sizes, default=0.0) + 2.0 * edge)
-    tell("filling the duct with cubes", 0.2)
-    tree = octree(distance.on_lattice[1::2, 1::2, 1::2].astype(np.float64), sizes, edge)
-    places, tets = lattice_tets(tree)
+    tell("filling the duct with cubes", 0.1)
+    tree, edge = _cubes(domain, settings)
+    # numba takes half a second to load, which no refused case file should cost
+    from pipeline.mesh.engines.lattice.tetrahedra import lattice_tetrahedra, lattice_vertices
+
+    tell("measuring the distance to the fibers", 0.2)
+    vertices = lattice_vertices(tree)
+    distance = fiber_distance(domain, 2.0 * wanted_edges(domain, settings))
+    ends = 2 * tree.counts
+    plane = np.where(vertices.places == 0, -1, np.where(vertices.places == ends, 1, 0)).astype(np.int8)
+    points: Floats = np.where(plane > 0, upper, lower + vertices.places * (0.5 * edge))
+    value = distance.at(points)
+    tets = lattice_tetrahedra(tree, vertices, value)
 
     tell(f"cutting the fibers out of {len(tets)} tetrahedra", 0.4)
-    lattice = Lattice(
-        points=places * (size / (2 * counts)),
-        plane=np.where(places == 0, -1, np.where(places == 2 * counts, 1, 0)).astype(np.int8),
-        tets=tets,
-        edge=edge,
-        size=size,
+    lattice = Lattice(points, plane, np.asarray(vertices.width * edge.max(), np.float64), tets, lower, upper)
+    points, cells = _cut(lattice, value, distance)
+    return RawMesh(points, cells, _LEASH, time.monotonic() - began, peak_memory())
+
+
+def wanted_edges(domain: FluidDomain, settings: TetmeshSettings) -> Floats:
+    """Largest edge of a cube at each fiber, (fibers,) array [m]; one shorter than thick asks for smaller ones."""
+    pieces = domain.pieces
+    lengths = np.linalg.norm(pieces.end - pieces.start, axis=1)
+    length = np.bincount(pieces.fiber, lengths, len(domain.radius))
+    diameter = 2.0 * domain.radius
+    wanted: Floats = np.asarray(settings.edge * np.clip(length, _SHORTEST * diameter, diameter), np.float64)
+    return wanted
+
+
+def _cubes(domain: FluidDomain, settings: TetmeshSettings) -> tuple["Octree", Floats]:
+    """Cut the duct into cubes: the tree, and the extent of the smallest cube along each axis [m]."""
+    from pipeline.geometry.cylinders import table
+    from pipeline.mesh.engines.lattice.octree import Demand, octree
+    from pipeline.mesh.engines.lattice.sizes import allowed, grid
+
+    lower, upper = np.array(domain.box.lower), np.array(domain.box.upper)
+    pieces = domain.pieces
+    there = np.unique(pieces.fiber)
+    wanted = wanted_edges(domain, settings)[there]
+    lengths = np.bincount(pieces.fiber, np.linalg.norm(pieces.end - pieces.start, axis=1), len(domain.radius))
+    largest = domain.mean_diameter * max(settings.largest_edge, settings.edge)
+    if settings.growth == 0.0:
+        largest = float(wanted.min())
+    wrapped = np.zeros(3, dtype=bool)
+    cubes = grid(upper - lower, wanted, (lengths * domain.radius)[there], _FINER, largest, wrapped)
+    demand = Demand(
+        table(pieces.start - lower, pieces.end - lower, domain.radius[pieces.fiber]),
+        pieces.flat,
+        pieces.fiber,
+        allowed(wanted)[np.searchsorted(there, pieces.fiber)],
+        settings.growth,
+        largest,
+        0.5**_FINER,
     )
-    value = distance.on_lattice[tuple(places.T)].astype(np.float64)
-    offset = 0.0
-    for _ in range(_OFFSETS):
-        points, plane, cells = _cut(lattice, value - offset, distance.thicker(offset))
-        # chords lie within a circle: the fibers have to be a little thicker for their volume to be right
-        offset += (volumes(points, cells).sum() - domain.volume / unit**3) / _wall_area(points, cells, plane)
-    in_meters = np.where(plane < 0, lower, np.where(plane > 0, upper, points * unit + lower))
-    return RawMesh(in_meters, cells, _WALL_LEASH * unit, time.monotonic() - began, peak_memory())
+    limit = memory_allowed(settings.memory_limit)
+    return octree(demand, cubes.counts, cubes.edge, _NARROW, wrapped, limit / _BYTES), cubes.edge
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Lattice:
-    """Tetrahedra that fill the duct; lengths are in fiber diameters from its lower corner.
+    """Tetrahedra that fill the duct.
 
     Parameters
     ----------
-    points : (n, 3) array
+    points : (n, 3) array [m]
     plane : (n, 3) int8 array
         Along each axis: -1 on the duct's lower plane, 1 on its upper plane, 0 between.
+    width : (n,) array [m]
+        Edge of the smallest cube at each vertex.
     tets : (m, 4) int array
-    edge : float
-        Of the smallest cubes.
-    size : (3,) array
-        Of the duct.
+    lower, upper : (3,) arrays [m]
+        Corners of the duct.
     """
 
     points: Floats
     plane: npt.NDArray[np.int8]
+    width: Floats
     tets: Ints
-    edge: float
-    size: Floats
+    lower: Floats
+    upper: Floats
 
 
-def _cut(lattice: Lattice, value: Floats, distance: "FiberDistance") -> tuple[Floats, npt.NDArray[np.int8], Ints]:
+def _cut(lattice: Lattice, value: Floats, distance: "FiberDistance") -> tuple[Floats, Ints]:
     """Move vertices near the surface onto it, cut what still crosses it, and keep what lies in the air."""
-    from pipeline.mesh.engines.lattice.stuffing import crossed_edges, kept
+    from pipeline.mesh.engines.lattice.cut import crossed_edges, in_air
 
-    points, plane = lattice.points.copy(), lattice.plane
-    near = np.flatnonzero(np.abs(value) < _SNAP * lattice.edge)
+    points, plane, tets = lattice.points.copy(), lattice.plane, lattice.tets
+    near = np.flatnonzero(np.abs(value) < _SNAP * lattice.width)
     free = (plane[near] == 0).astype(np.float64)
-    moved, done = distance.snapped(points[near], free, _LEASH * _SNAP * lattice.edge)
+    moved, done = distance.on_surface(points[near], free, _FARTHEST * _SNAP * lattice.width[near])
     on_surface = np.zeros(len(points), dtype=bool)
     on_surface[near] = done
     places = points.copy()
     places[near] = moved
-    touched = lattice.tets[on_surface[lattice.tets].any(axis=1)]
-    least = _LEAST * lattice.edge**3
+    touched = tets[on_surface[tets].any(axis=1)]
+    least = _LEAST * lattice.width[touched].min(axis=1) ** 3
     while True:
         # on a plane of the duct a vertex may have to go far to meet the surface, and turn a tetrahedron inside out
         flat = touched[volumes(places, touched) < least]
@@ -144,40 +173,23 @@ def _cut(lattice: Lattice, value: Floats, distance: "FiberDistance") -> tuple[Fl
         on_surface[back] = False
         places[back] = points[back]
     points = places
-    side = np.sign(value).astype(np.int8)
-    side[near] = np.where(on_surface[near], 0, np.where(distance.at(points[near]) > 0.0, 1, -1))
-    edges = crossed_edges(lattice.tets, side)
+    side = np.where(on_surface, 0, np.where(value > 0.0, 1, -1)).astype(np.int8)
+    edges, table = crossed_edges(tets, side)
     crossings = distance.crossings(points[edges[:, 0]], points[edges[:, 1]])
+    rank = np.empty(len(points), np.int64)
+    rank[np.argsort(value, kind="stable")] = np.arange(len(points))
     points = np.concatenate([points, crossings])
     ends = plane[edges[:, 0]], plane[edges[:, 1]]
     plane = np.concatenate([plane, np.where(ends[0] == ends[1], ends[0], np.int8(0))])
-    points = np.where(plane < 0, 0.0, np.where(plane > 0, lattice.size, points))
-    return points, plane, kept(points, lattice.tets, side, edges, value)
-
-
-def _wall_area(points: Floats, tets: Ints, plane: npt.NDArray[np.int8]) -> float:
-    """Area of the boundary that lies on no plane of the duct."""
-    faces, _ = boundary(tets)
-    on_plane = [(plane[faces][:, :, axis] == end).all(axis=1) for axis in range(3) for end in (-1, 1)]
-    walls = faces[~np.logical_or.reduce(on_plane)]
-    return float(np.linalg.norm(area_vectors(points, walls), axis=1).sum())
-
-
-def _distances(edge: float, settings: TetmeshSettings) -> tuple[float, ...]:
-    """Distance from the fibers from which on the edge may be 2, 4, ... times that at the fibers."""
-    if settings.growth == 0.0:
-        return ()
-    factors = [1 << level for level in range(1, _LEVELS + 1)]
-    return tuple(edge * (f - 1) / settings.growth for f in factors if f * edge <= 1.01 * settings.largest_edge)
-
-
-def _check_memory(counts: Ints, settings: TetmeshSettings) -> None:
-    limit = memory_allowed(settings.memory_limit)
-    points = float(np.prod(2.0 * counts + 1.0))
-    if _BYTES * points > limit:
-        x, y, z = counts.tolist()
-        raise StageError(
-            f"a lattice of {x} x {y} x {z} cubes takes about {_BYTES * points / 2**20:,.0f} MiB of memory, over "
-            f"the limit of {limit / 2**20:,.0f} MiB; raise tetmesh.edge (now {settings.edge:g} diameters) or "
-            "tetmesh.memory_limit"
-        )
+    points = np.where(plane < 0, lattice.lower, np.where(plane > 0, lattice.upper, points))
+    # where walls meet at an angle, all corners of a tetrahedron may lie on them and air between
+    between = np.flatnonzero((side[tets] == 0).all(axis=1))
+    width = lattice.width[tets[between]].min(axis=1)
+    airy = distance.at(points[tets[between]].mean(axis=1)) > _AIR * width
+    # but none of its edges may run through a fiber
+    for a, b in itertools.combinations(range(4), 2):
+        airy &= distance.at(points[tets[between][:, [a, b]]].mean(axis=1)) > -_THROUGH * width
+    thick = volumes(points, tets[between]) > _THICK * width**3
+    kept = np.zeros(len(tets), dtype=bool)
+    kept[between[airy & thick]] = True
+    return points, in_air(points, tets, side, rank, table, kept)
