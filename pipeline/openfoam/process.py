@@ -42,6 +42,10 @@ def started(command: list[str], case: Path, log: Path) -> Iterator["subprocess.P
                 )
             link.symlink_to(case, target_is_directory=True)
             case = link
+        if command[0] == "mpirun":
+            # which tells its ranks where the link leads to, and not of the link
+            after = command.index("-np") + 2
+            command = [*command[:after], "env", f"PWD={case}", *command[after:]]
         yield stack.enter_context(child_process.started(command, case, log, environment(case), scratch))
 
 

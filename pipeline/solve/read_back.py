@@ -48,6 +48,21 @@ def history(case: Path, name: str, column: int = 1) -> Floats:
     return np.array(rows, np.float64).reshape(-1, 2)
 
 
+def table(case: Path) -> Floats:
+    """Read what is known of each iteration that all tables tell of.
+
+    Returns
+    -------
+    (k, 5) array
+        Iteration, mean pressure over the density at inlet and outlet, flow out of inlet and outlet.
+    """
+    each = [history(case, name) for name in (PRESSURE_IN, PRESSURE_OUT, FLOW_IN, FLOW_OUT)]
+    common = each[0][:, 0]
+    for other in each[1:]:
+        common = np.intersect1d(common, other[:, 0])
+    return np.column_stack([common, *(found[np.isin(found[:, 0], common), 1] for found in each)])
+
+
 def _iteration(folder: Path) -> float:
     try:
         return float(folder.name)

@@ -13,6 +13,7 @@ import numpy as np
 
 from pipeline import child_process
 from pipeline.errors import StageError
+from pipeline.line.places import remove, write_text
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.flow import Flow, Solution
 from pipeline.openfoam.environment import openfoam_missing
@@ -22,12 +23,12 @@ from pipeline.solve import read_back
 from pipeline.solve.bed import Bed
 from pipeline.solve.settings import OpenFoamSettings
 from pipeline.solve.settled import change
+from pipeline.solve.states import KEPT, cut, saved, saving_step
 
 MASS_ERROR = 1e-5
 """A pressure drop counts as settled only where as much air leaves as enters, to this share."""
 LOST_MASS = 0.5
 """A run diverges where this share of the air is lost or found between inlet and outlet."""
-_SAVES = 100  # iterations between two states that a killed run continues from
 _KEY, _SECONDS, _STOP = "fibertwin.key", "fibertwin.seconds", "stop"
 
 
@@ -72,36 +73,61 @@ def solve(
     began = time.monotonic()
     progress("solve: preparing the case")
     _prepare(case, work, settings)
-    before = float((work / _SECONDS).read_text()) if (work / _SECONDS).exists() else 0.0
+    before = _seconds_before(work)
     command = [program]
     if settings.cores > 1:
         command = ["mpirun", "-np", str(settings.cores), program, "-parallel"]
     try:
-        settled = _run(command, work, flow, settings, progress)
+        last, settled = _run(command, work, flow, settings, progress)
     finally:
         seconds = before + time.monotonic() - began
-        (work / _SECONDS).write_text(f"{seconds:.3f}")
+        write_text(work / _SECONDS, f"{seconds:.3f}")
+    cut(work, last)
     return _solution(work, flow, bed, settled, seconds, settings.cores)
 
 
 def _prepare(case: Path, work: Path, settings: OpenFoamSettings) -> None:
     """Make `work` a copy of the case, split for the cores, unless a run of just this case was killed there."""
     key = _digest(case, settings.cores)
-    key_file = work / _KEY
-    if not key_file.exists() or key_file.read_text() != key:
-        shutil.rmtree(work, ignore_errors=True)
+    if _text(work / _KEY) == key:
+        # the last fields may be half written: those of which the tables tell are whole
+        rows = read_back.table(work)
+        cut(work, int(rows[-1, 0]) if len(rows) else 0)
+        # and so may be a dictionary that was edited
+        remove(work / "system")
+        shutil.copytree(case / "system", work / "system")
+    else:
+        remove(work)
         shutil.copytree(case, work)
+    if settings.cores > 1:
+        _edit(work / "system/decomposeParDict", numberOfSubdomains=settings.cores, n=f"(1 1 {settings.cores})")
+    if _text(work / _KEY) != key:
         if settings.cores > 1:
-            _edit(work / "system/decomposeParDict", numberOfSubdomains=settings.cores, n=f"(1 1 {settings.cores})")
             call(["decomposePar", "-force"], work)
         # last, so that a copy that was killed halfway is not taken for a run
-        key_file.write_text(key)
+        write_text(work / _KEY, key)
     (work / _STOP).unlink(missing_ok=True)
+    step = saving_step(settings.max_iterations)
     _edit(
         work / "system/controlDict",
-        endTime=settings.max_iterations,
-        writeInterval=min(_SAVES, settings.max_iterations),
+        endTime=settings.max_iterations // step * step,
+        writeInterval=step,
+        purgeWrite=KEPT,
     )
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="ascii")
+    except (OSError, ValueError):
+        return ""
+
+
+def _seconds_before(work: Path) -> float:
+    try:
+        return float(_text(work / _SECONDS))
+    except ValueError:
+        return 0.0
 
 
 def _application(case: Path) -> str:
@@ -134,34 +160,67 @@ def _edit(path: Path, **entries: object) -> None:
     path.write_text(text, encoding="ascii")
 
 
-def _run(command: list[str], work: Path, flow: Flow, settings: OpenFoamSettings, progress: Progress) -> bool:
-    """Run the solver until the pressure drop has settled, it ends, or the time is over; tell whether it has settled."""
+def _run(
+    command: list[str], work: Path, flow: Flow, settings: OpenFoamSettings, progress: Progress
+) -> tuple[int, bool]:
+    """Run the solver until the pressure drop has settled, it ends, or the time is over.
+
+    Returns
+    -------
+    last : int
+        The iteration that counts; the solver may have gone on by chance.
+    settled : bool
+    """
     log = work / f"log.{_application(work)}"
     deadline = time.monotonic() + settings.time_limit
-    drops, settled = _pressure_drops(work, flow), False
+    rows = read_back.table(work)
+    last = _settled(work, rows, settings)
+    if last is None and not (len(rows) and _converged(log) and int(rows[-1, 0]) in saved(work)):
+        with started(command, work, log) as solver:
 
-    def look() -> str:
-        nonlocal drops, settled
-        drops = _pressure_drops(work, flow)
-        if len(drops):
-            last = change(drops[:, 1], settings.window)
-            settled = settled or (last < settings.tolerance and abs(_mass_error(work)) < MASS_ERROR)
-            _tell(progress, log, drops, last, settings)
-            lost = len(drops) > settings.window and abs(_mass_error(work)) > LOST_MASS
-            if lost or not math.isfinite(drops[-1, 1]):
-                raise _failure(f"diverged after {drops[-1, 0]:.0f} iterations", log)
-        if settled or time.monotonic() > deadline:
-            (work / _STOP).touch()
-        return "solving"
+            def look() -> str:
+                nonlocal rows, last
+                rows = read_back.table(work)
+                if len(rows):
+                    _tell(progress, log, rows, flow, settings)
+                    lost = len(rows) > settings.window and abs(_mass_error(rows[-1])) > LOST_MASS
+                    if lost or not math.isfinite(_drop(rows[-1], flow)):
+                        raise _failure(f"diverged after {rows[-1, 0]:.0f} iterations", log)
+                    last = _settled(work, rows, settings)
+                    if last is not None:
+                        child_process.end(solver)
+                if time.monotonic() > deadline:
+                    # it saves its fields and ends
+                    (work / _STOP).touch()
+                return "solving"
 
-    with started(command, work, log) as solver:
-        child_process.watch(solver, look)
-    code = solver.returncode
-    if code != 0 or not len(drops):
-        at = f"after {drops[-1, 0]:.0f} iterations" if len(drops) else "before its first iteration"
-        raise _failure(f"failed {at} (exit code {code})", log)
+            child_process.watch(solver, look)
+        if last is None and (solver.returncode != 0 or not len(rows)):
+            at = f"after {rows[-1, 0]:.0f} iterations" if len(rows) else "before its first iteration"
+            raise _failure(f"failed {at} (exit code {solver.returncode})", log)
+    if last is not None:
+        return last, True
     # the solver may also find that nothing changes any more before the window is full
-    return settled or "SIMPLE solution converged" in tail(log, 40)
+    return int(rows[-1, 0]), _converged(log)
+
+
+def _settled(work: Path, rows: Floats, settings: OpenFoamSettings) -> int | None:
+    """Give the first saved iteration at which the pressure drop has settled."""
+    step = saving_step(settings.max_iterations)
+    drops = rows[:, 1] - rows[:, 2]
+    there = saved(work)
+    for row in np.flatnonzero(rows[:, 0] % step == 0):
+        if (
+            change(drops[: row + 1], settings.window) < settings.tolerance
+            and abs(_mass_error(rows[row])) < MASS_ERROR
+            and int(rows[row, 0]) in there
+        ):
+            return int(rows[row, 0])
+    return None
+
+
+def _converged(log: Path) -> bool:
+    return "SIMPLE solution converged" in tail(log, 40)
 
 
 def _failure(what: str, log: Path) -> StageError:
@@ -171,46 +230,42 @@ def _failure(what: str, log: Path) -> StageError:
     )
 
 
-def _pressure_drops(work: Path, flow: Flow) -> Floats:
-    inlet, outlet = (read_back.history(work, name) for name in (read_back.PRESSURE_IN, read_back.PRESSURE_OUT))
-    both = min(len(inlet), len(outlet))
+def _drop(row: Floats, flow: Flow) -> float:
     # OpenFOAM's incompressible pressure is over the density
-    return np.column_stack([inlet[:both, 0], flow.density * (inlet[:both, 1] - outlet[:both, 1])])
+    return float(flow.density * (row[1] - row[2]))
 
 
-def _mass_error(work: Path) -> float:
-    """Flow out over flow in, less 1, at the last iteration that both are known of."""
-    inlet, outlet = (read_back.history(work, name)[:, 1] for name in (read_back.FLOW_IN, read_back.FLOW_OUT))
-    both = min(len(inlet), len(outlet))
-    return float(-outlet[both - 1] / inlet[both - 1] - 1.0) if both else math.inf
+def _mass_error(row: Floats) -> float:
+    """Flow out over flow in, less 1."""
+    return float(-row[4] / row[3] - 1.0)
 
 
-def _tell(progress: Progress, log: Path, drops: Floats, last: float, settings: OpenFoamSettings) -> None:
+def _tell(progress: Progress, log: Path, rows: Floats, flow: Flow, settings: OpenFoamSettings) -> None:
+    last = change(rows[:, 1] - rows[:, 2], settings.window)
     found = read_back.residuals(tail(log, 60))
     told = ", ".join(f"{name} {value:.1e}" for name, value in sorted(found.items()))
     # the change falls from 1 to the tolerance, in even steps on a logarithmic scale
     done = math.log(max(min(last, 1.0), settings.tolerance)) / math.log(settings.tolerance)
     progress(
-        f"solve: iteration {drops[-1, 0]:.0f}, pressure drop {drops[-1, 1]:.4g} Pa, "
+        f"solve: iteration {rows[-1, 0]:.0f}, pressure drop {_drop(rows[-1], flow):.4g} Pa, "
         f"changed by {100 * last:.2g} % in {settings.window} iterations; residuals {told}",
-        min(max(done, drops[-1, 0] / settings.max_iterations), 1.0),
+        min(max(done, rows[-1, 0] / settings.max_iterations), 1.0),
     )
 
 
 def _solution(work: Path, flow: Flow, bed: Bed, settled: bool, seconds: float, cores: int) -> Solution:
-    drops = _pressure_drops(work, flow)
-    drop = float(drops[-1, 1])
+    row = read_back.table(work)[-1]
+    drop = _drop(row, flow)
     # the third number of the force's first vector: along z
     drag = float(read_back.history(work, read_back.DRAG, 3)[-1, 1])
-    flow_in = -float(read_back.history(work, read_back.FLOW_IN)[-1, 1])
     return Solution(
         pressure_drop=drop,
-        flow_rate=flow_in,
+        flow_rate=-float(row[3]),
         drag=drag,
         permeability=bed.permeability(flow, drop),
         force_balance_error=float(drag / (drop * bed.face_area) - 1.0),
-        mass_balance_error=_mass_error(work),
-        iterations=int(drops[-1, 0]),
+        mass_balance_error=_mass_error(row),
+        iterations=int(row[0]),
         converged=settled,
         seconds=seconds,
         cores=cores,

@@ -86,11 +86,14 @@ class Kills:
         self.reference = self.results(self.place / "reference")
 
     def started(self, marked: Marked, run: Path) -> "subprocess.Popen[bytes]":
-        command = [sys.executable, "-m", "pipeline.cli", "run", self.place / "case.toml", "--out", run, "--quiet"]
+        command = [sys.executable, "-m", "pipeline.cli", "run", str(self.place / "case.toml"), "--quiet"]
         options = [part for setting in self.variant.settings for part in ("--set", setting)]
         with (self.place / "said").open("ab") as said:
             return subprocess.Popen(
-                [*command, "--until", self.variant.until, *options], env=marked.environment, stdout=said, stderr=said
+                [*command, "--out", str(run), "--until", self.variant.until, *options],
+                env=marked.environment,
+                stdout=said,
+                stderr=said,
             )
 
     def results(self, run: Path) -> dict[str, str]:

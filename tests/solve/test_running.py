@@ -10,11 +10,12 @@ import pytest
 
 from pipeline.errors import StageError
 from pipeline.export.formats.openfoam.case import write_openfoam
-from pipeline.nouns.flow import Flow
+from pipeline.nouns.flow import Flow, Solution
 from pipeline.openfoam.environment import openfoam_missing
 from pipeline.solve.bed import Bed
 from pipeline.solve.running import solve
 from pipeline.solve.settings import OpenFoamSettings
+from pipeline.solve.states import saved
 from tests.openfoam import AIR
 from tests.sample_meshes import duct
 
@@ -148,3 +149,85 @@ def test_without_openfoam_the_reason_and_the_cure_are_told(tmp_path: Path, monke
     with pytest.raises(StageError, match="decomposePar and mpirun"):
         solve(case, tmp_path / "work", AIR, BED, OpenFoamSettings(cores=2))
     assert not (tmp_path / "work").exists()
+
+
+def told(found: Solution) -> Solution:
+    """Leave out the seconds, which no two runs share."""
+    return replace(found, seconds=0.0)
+
+
+@pytest.mark.openfoam
+@pytest.mark.parametrize("cores", [1, pytest.param(2, marks=pytest.mark.slow)])
+def test_two_solves_of_one_case_give_the_same_digits(cores: int, tmp_path: Path) -> None:
+    case = bar_case(tmp_path / "case", cells=6)
+    settings = OpenFoamSettings(cores=cores)
+    found = [told(solve(case, tmp_path / f"work{k}", AIR, BED, settings)) for k in range(2)]
+    assert found[0] == found[1]
+    assert found[0].converged
+    # whoever looks later at the tables and fields finds the same too
+    assert saved(tmp_path / "work0")[-1] == found[0].iterations
+    files = [
+        {
+            str(path.relative_to(tmp_path / f"work{k}")): path.read_bytes()
+            for path in (tmp_path / f"work{k}").rglob("*")
+            # how many states stay depends on how far the solver went before it was ended
+            if path.is_file() and (path.name.endswith(".dat") or path.parent.name == str(found[0].iterations))
+        }
+        for k in range(2)
+    ]
+    assert files[0] == files[1]
+    assert len(files[0]) > 5
+
+
+@pytest.mark.openfoam
+def test_a_solve_that_is_killed_again_and_again_ends_with_the_digits_of_one_that_is_not(tmp_path: Path) -> None:
+    case = bar_case(tmp_path / "case", cells=9)
+    program = (
+        "from pathlib import Path; from pipeline.solve.running import solve; from tests.openfoam import AIR\n"
+        "from tests.solve.test_running import BED\n"
+        f"solve(Path({str(case)!r}), Path({str(tmp_path / 'work')!r}), AIR, BED)"
+    )
+    log, seen = tmp_path / "work/log.simpleFoam", 0
+    for _ in range(2):
+        victim = subprocess.Popen([sys.executable, "-c", program], stderr=subprocess.DEVNULL)
+        deadline = time.monotonic() + 60
+        # 25 more iterations: past the next saved state
+        while victim.poll() is None and not (log.exists() and log.read_text().count("\nTime = ") >= seen + 25):
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
+        victim.kill()
+        victim.wait()
+        seen = log.read_text().count("\nTime = ")
+    assert told(solve(case, tmp_path / "work", AIR, BED)) == told(solve(case, tmp_path / "fresh", AIR, BED))
+
+
+@pytest.mark.openfoam
+def test_fields_that_were_half_written_are_not_gone_on_from(tmp_path: Path) -> None:
+    case = bar_case(tmp_path / "case", cells=6)
+    settings = OpenFoamSettings(max_iterations=40, tolerance=1e-9)
+    solve(case, tmp_path / "work", AIR, BED, settings)
+    half = tmp_path / "work/60"
+    half.mkdir()
+    (half / "U").write_text("FoamFile { cut")
+    (tmp_path / "work/system/controlDict").write_text("cut too")
+    again = solve(case, tmp_path / "work", AIR, BED, OpenFoamSettings(max_iterations=80, tolerance=1e-9))
+    fresh = solve(case, tmp_path / "fresh", AIR, BED, OpenFoamSettings(max_iterations=80, tolerance=1e-9))
+    assert told(again) == told(fresh)
+
+
+@pytest.mark.openfoam
+def test_a_solution_that_was_found_already_is_not_computed_again(tmp_path: Path) -> None:
+    case = bar_case(tmp_path / "case", cells=6)
+    first = solve(case, tmp_path / "work", AIR, BED)
+    log = (tmp_path / "work/log.simpleFoam").read_text()
+    assert told(solve(case, tmp_path / "work", AIR, BED)) == told(first)
+    assert (tmp_path / "work/log.simpleFoam").read_text() == log
+
+
+@pytest.mark.openfoam
+@pytest.mark.parametrize("name", ["it's with blanks", 'a "größe";$HOME(c)'])
+def test_a_case_is_solved_wherever_it_lies(name: str, tmp_path: Path) -> None:
+    case = bar_case(tmp_path / name / "case", cells=4)
+    for cores in (1, 2) if "blanks" in name else (1,):
+        settings = OpenFoamSettings(cores=cores)
+        assert solve(case, tmp_path / name / f"work{cores}", AIR, BED, settings).converged

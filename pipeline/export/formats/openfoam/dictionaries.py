@@ -234,6 +234,11 @@ def format_field(name: str, kind: str, dimensions: str, internal: str, boundary:
 _ALLRUN = """#!/bin/sh
 # Checks the mesh and runs the solver: ./Allrun [cores]
 cd "${0%/*}" || exit 1
+case $PWD in *[!A-Za-z0-9_./+-]*)
+    echo "OpenFOAM cannot take this path: $PWD"
+    echo "go through a link: ln -s \\"\\$PWD\\" /tmp/case && cd /tmp/case && $0"
+    exit 1 ;;
+esac
 # Debian's package has no environment to source, only this
 if [ -z "$WM_PROJECT_DIR" ] && [ -d /usr/share/openfoam ]; then
     export WM_PROJECT_DIR=/usr/share/openfoam
@@ -257,7 +262,7 @@ if [ "$cores" -gt 1 ]; then
     sed -i -e "s/^numberOfSubdomains .*/numberOfSubdomains $cores;/" -e "s/n  *(1 1 .*/n       (1 1 $cores);/" \\
         system/decomposeParDict
     run decomposePar decomposePar -force
-    run SOLVER ${MPIRUN:-mpirun} -np "$cores" SOLVER -parallel
+    run SOLVER ${MPIRUN:-mpirun} -np "$cores" env PWD="$PWD" SOLVER -parallel
     run reconstructPar reconstructPar -latestTime
 else
     run SOLVER SOLVER

@@ -8,6 +8,11 @@ _ALLMESH = """#!/bin/sh
 # Meshes the air between the fibers: ./Allmesh [cores]
 # The mesh is left in constant/polyMesh, in meters; what went before it is removed first.
 cd "${0%/*}" || exit 1
+case $PWD in *[!A-Za-z0-9_./+-]*)
+    echo "OpenFOAM cannot take this path: $PWD"
+    echo "go through a link: ln -s \\"\\$PWD\\" /tmp/case && cd /tmp/case && $0"
+    exit 1 ;;
+esac
 # Debian's package has no environment to source, only this
 if [ -z "$WM_PROJECT_DIR" ] && [ -d /usr/share/openfoam ]; then
     export WM_PROJECT_DIR=/usr/share/openfoam
@@ -43,7 +48,7 @@ if [ "$cores" -gt 1 ]; then
     sed -i -e "s/^numberOfSubdomains .*/numberOfSubdomains $cores;/" -e "s/n  *(.*/n       ($split);/" \\
         system/decomposeParDict
     run decomposePar decomposePar -force
-    run snappyHexMesh ${MPIRUN:-mpirun} -np "$cores" snappyHexMesh -parallel -overwrite
+    run snappyHexMesh ${MPIRUN:-mpirun} -np "$cores" env PWD="$PWD" snappyHexMesh -parallel -overwrite
     run reconstructParMesh reconstructParMesh -constant
     rm -rf processor[0-9]*
 else
