@@ -8,7 +8,7 @@ import numpy as np
 
 from pipeline.analytics.settings import FlowSettings
 from pipeline.design.history import History, history
-from pipeline.design.looseness import Place
+from pipeline.design.packing import Place
 from pipeline.design.targets import Target, readable
 from pipeline.mat.generate import generate
 from pipeline.mat.settings import LayeredSettings, Stop

@@ -1,7 +1,7 @@
 """Find relaxation slope, spacing and coverage of the mat whose measures a filter has.
 
 A search over one number at a time: at each slope and spacing, mats of several seeds are grown, and the coverage is
-read off their mean growth; slope and spacing are then moved along one way from loose to tight (`looseness`) until the
+read off their mean growth; slope and spacing are then moved along one way from loose to tight (`packing`) until the
 second target is met. All steps use the same seeds, so chance does not come between two of them.
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from pipeline.case import Case
-from pipeline.design.looseness import Place, between, stretches
+from pipeline.design.packing import Place, between, stretches
 from pipeline.design.search import Search, scale
 from pipeline.design.targets import QUANTITIES, Target, readable
 from pipeline.errors import CaseError

@@ -6,7 +6,7 @@ import numpy as np
 
 from pipeline.mat.array import array
 from pipeline.mat.settings import ArraySettings, BoxSettings, FileSettings, LayeredSettings
-from pipeline.mat.tally import Predict
+from pipeline.mat.sums import Predict
 from pipeline.nouns.fibers import Mat
 from pipeline.progress import Progress, silent
 
@@ -41,8 +41,8 @@ def generate(
     Examples
     --------
     >>> from pipeline.mat.settings import Stop
-    >>> pile = LayeredSettings(side=2e-5, fiber_diameter=1e-6, relaxation_slope=0.15, stop=Stop(count=10))
-    >>> generate(pile).fibers
+    >>> deposit = LayeredSettings(side=2e-5, fiber_diameter=1e-6, relaxation_slope=0.15, stop=Stop(count=10))
+    >>> generate(deposit).fibers
     10
     """
     match settings:

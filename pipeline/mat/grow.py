@@ -10,10 +10,10 @@ from pipeline.errors import CaseError
 from pipeline.geometry.box import Box
 from pipeline.geometry.triangles import Floats
 from pipeline.mat.chords import draw_chords
+from pipeline.mat.deposit import Deposit, as_chord, drop
 from pipeline.mat.diameters import draw_diameters
-from pipeline.mat.pile import Pile, as_chord, drop
 from pipeline.mat.settings import BoxSettings, LayeredSettings
-from pipeline.mat.tally import Predict, Tally
+from pipeline.mat.sums import Predict, RunningSums
 from pipeline.nouns.fibers import Mat
 from pipeline.progress import Progress
 
@@ -29,34 +29,34 @@ def grow(
 ) -> Mat:
     """Draw fibers and place each until the stop is reached; see `pipeline.mat.generate` for the parameters."""
     stop = settings.stop
-    tally = Tally(settings.side**2, settings.thickness if isinstance(settings, BoxSettings) else 0.0)
-    pile = Pile(settings.side if settings.periodic else 0.0)
+    sums = RunningSums(settings.side**2, settings.thickness if isinstance(settings, BoxSettings) else 0.0)
+    deposit = Deposit(settings.side if settings.periodic else 0.0)
     for ends, radius in _draws(settings, rng):
         chord = as_chord(ends)
         if isinstance(settings, BoxSettings):
             nodes = _anywhere(chord, radius, settings, rng)
         else:
             _refuse_a_ring(settings, radius)
-            nodes = drop(pile, chord, radius, settings.relaxation_slope, settings.contact, settings.spacing)
-        pile.add(ends, chord, radius, nodes)
+            nodes = drop(deposit, chord, radius, settings.relaxation_slope, settings.contact, settings.spacing)
+        deposit.add(ends, chord, radius, nodes)
         steps = np.diff(nodes, axis=0)
-        tally.add(radius, chord[4], float(np.hypot(steps[:, 0], steps[:, 1]).sum()), float(nodes[:, 1].max()))
-        value = tally.value(stop, predict)
+        sums.add(radius, chord[4], float(np.hypot(steps[:, 0], steps[:, 1]).sum()), float(nodes[:, 1].max()))
+        value = sums.value(stop, predict)
         if value >= stop.target:
             break
-        if tally.count == settings.max_fibers:
+        if sums.count == settings.max_fibers:
             raise CaseError(
-                f"mat.stop.{stop.quantity} = {stop.target:g} is not reached by mat.max_fibers = {tally.count} fibers: "
-                f"they give {value:.4g}, with coverage {tally.coverage:.3g}, solidity {tally.solidity:.3g} and "
-                f"thickness {tally.thickness * 1e6:.3g} um; ask for less or raise mat.max_fibers"
+                f"mat.stop.{stop.quantity} = {stop.target:g} is not reached by mat.max_fibers = {sums.count} fibers: "
+                f"they give {value:.4g}, with coverage {sums.coverage:.3g}, solidity {sums.solidity:.3g} and "
+                f"thickness {sums.thickness * 1e6:.3g} um; ask for less or raise mat.max_fibers"
             )
-        if tally.count % _BATCH == 0:
-            progress(f"{tally.count} fibers", min(value / stop.target, 1.0))
+        if sums.count % _BATCH == 0:
+            progress(f"{sums.count} fibers", min(value / stop.target, 1.0))
     return Mat(
-        nodes=pile.points(),
-        first=pile.first[: tally.count + 1].copy(),
-        radius=pile.radius[: tally.count].copy(),
-        slab=Box((0.0, 0.0, 0.0), (settings.side, settings.side, tally.thickness)),
+        nodes=deposit.points(),
+        first=deposit.first[: sums.count + 1].copy(),
+        radius=deposit.radius[: sums.count].copy(),
+        slab=Box((0.0, 0.0, 0.0), (settings.side, settings.side, sums.thickness)),
         seed=settings.seed,
         origin=f"{settings.generator}, until {stop.quantity} {stop.target:g}: {value:.6g}",
         periodic=settings.periodic,

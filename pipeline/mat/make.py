@@ -11,7 +11,7 @@ from pipeline.mat.exchange import write_fibers
 from pipeline.mat.generate import generate
 from pipeline.mat.measures import measure
 from pipeline.mat.settings import BoxSettings, LayeredSettings
-from pipeline.mat.tally import report_stop
+from pipeline.mat.sums import report_stop
 from pipeline.progress import Progress
 
 if TYPE_CHECKING:

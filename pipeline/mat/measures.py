@@ -6,8 +6,10 @@ import math
 
 import numpy as np
 
+from pipeline.geometry.box import Box
 from pipeline.geometry.triangles import Floats
 from pipeline.mat.neighbors import near_fibers
+from pipeline.mat.windows import lengths_within
 from pipeline.nouns.fibers import Mat
 from pipeline.nouns.mat_measures import DiameterMoments, MatMeasures, SolidityProfile
 
@@ -15,6 +17,8 @@ CONTACT_GAP = 0.01
 """Fibers count as touching whose surfaces are this share of the sum of their radii apart, or less."""
 
 _LAYERS = 50
+
+_FRAME = 0.1  # of the plan's width, on each side
 
 
 def measure(mat: Mat) -> MatMeasures:
@@ -39,16 +43,16 @@ def measure(mat: Mat) -> MatMeasures:
     0.1
     """
     # numba is loaded where a mat is measured, not where a case file is read
+    from pipeline.mat.heights import mean_top, surface_heights
     from pipeline.mat.layers import solidity_profile
-    from pipeline.mat.relief import mean_top, relief
 
     start = mat.segment_starts()
     step = mat.nodes[start + 1] - mat.nodes[start]
     fiber = mat.segment_fibers()
     radius = mat.radius[fiber]
-    inside = share_inside(mat)
+    inside = mat.share_inside()
     length = inside * mat.segment_lengths()
-    tops = relief(mat)
+    tops = surface_heights(mat)
     touching = near_fibers(mat, (1.0 + CONTACT_GAP) * mat.radius)
     return MatMeasures(
         fibers=mat.fibers,
@@ -63,20 +67,27 @@ def measure(mat: Mat) -> MatMeasures:
         orientation=_orientation(step, length),
         diameters=_moments(2.0 * mat.radius, _per_fiber(mat, length)),
         profile=_profile(mat, solidity_profile(mat, inside, _LAYERS)),
+        frame_density=_frame_density(mat, math.pi * radius**2 * inside),
     )
 
 
-def share_inside(mat: Mat) -> Floats:
-    """Share of each segment that lies within the plan: 1, or 1/2 where its axis runs within a side, (segments,)."""
-    share = np.ones(mat.segments)
-    if mat.periodic:
-        return share
+def _frame_density(mat: Mat, section: Floats) -> float | None:
+    """Compare the solid per plan area in the outer tenth of the plan, all around, with that of the rest."""
+    (x0, y0, _), (x1, y1, _) = mat.slab.lower, mat.slab.upper
+    dx, dy = _FRAME * (x1 - x0), _FRAME * (y1 - y0)
+    if mat.periodic or min(dx, dy) < 2.0 * float(mat.radius.mean()):
+        return None
     start = mat.segment_starts()
-    for axis in (0, 1):
-        for side in (mat.slab.lower[axis], mat.slab.upper[axis]):
-            on_side = (mat.nodes[start, axis] == side) & (mat.nodes[start + 1, axis] == side)
-            share[on_side] *= 0.5
-    return share
+    begin, end = mat.nodes[start], mat.nodes[start + 1]
+    heights = mat.nodes[:, 2]
+    # beyond all axes along z
+    low, high = float(heights.min()) - mat.thickness, float(heights.max()) + mat.thickness
+    center = float((section * lengths_within(Box((x0 + dx, y0 + dy, low), (x1 - dx, y1 - dy, high)), begin, end)).sum())
+    if center == 0.0:
+        return None
+    frame = float((section * mat.segment_lengths()).sum()) - center
+    inner = (1.0 - 2.0 * _FRAME) ** 2
+    return (frame / (1.0 - inner)) / (center / inner)
 
 
 def _per_fiber(mat: Mat, length: Floats) -> Floats:

@@ -50,6 +50,20 @@ def cut_to(window: Box, nodes: Floats, first: Ints) -> tuple[Floats, Ints, Ints]
     return np.concatenate([np.empty((0, 3)), *pieces]), count, owner[begins]
 
 
+def lengths_within(window: Box, start: Floats, end: Floats) -> Floats:
+    """Give the length of each segment within a box, (segments,) array [m].
+
+    Examples
+    --------
+    >>> ends = np.array([[-1.0, 0.5, 0.5]]), np.array([[1.0, 0.5, 0.5]])
+    >>> lengths_within(Box((0, 0, 0), (1, 1, 1)), *ends).tolist()
+    [1.0]
+    """
+    enter, leave, _ = _within(window, start, end)
+    lengths: Floats = np.maximum(leave - enter, 0.0) * np.linalg.norm(end - start, axis=1)
+    return lengths
+
+
 def _within(window: Box, start: Floats, end: Floats) -> tuple[Floats, Floats, Floats]:
     """Shares of each segment at which it enters and leaves the box (enter >= leave: never), and its ends there."""
     step = end - start

@@ -10,6 +10,9 @@ import numpy.typing as npt
 from pipeline.geometry.box import Box
 from pipeline.nouns.arrays import Floats, Ints, freeze, require
 
+ON_SIDE = 1e-6
+"""Distance from a side of the plan, in radii, within which a point of an axis lies on it: coordinates are rounded."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Mat:
@@ -90,6 +93,27 @@ class Mat:
         start = self.segment_starts()
         lengths: Floats = np.linalg.norm(self.nodes[start + 1] - self.nodes[start], axis=1)
         return lengths
+
+    def share_inside(self) -> Floats:
+        """Share of each segment's cylinder that lies within the plan, (segments,) array [-].
+
+        1, or half for each side of the plan in which its axis runs: a symmetry plane there halves the fiber. Whoever
+        adds up volumes, areas or lengths of fibers adds up these shares.
+        """
+        share = np.ones(self.segments)
+        if self.periodic:
+            return share
+        start = self.segment_starts()
+        near = ON_SIDE * self.radius[self.segment_fibers()]
+        for axis in (0, 1):
+            for side in (self.slab.lower[axis], self.slab.upper[axis]):
+                off = np.abs(self.nodes[:, axis] - side)
+                share[(off[start] <= near) & (off[start + 1] <= near)] *= 0.5
+        return share
+
+    def inside_lengths(self) -> Floats:
+        """Length of each segment times `share_inside`, (segments,) array [m]."""
+        return self.share_inside() * self.segment_lengths()
 
 
 @dataclass(frozen=True, eq=False, slots=True)

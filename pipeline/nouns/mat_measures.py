@@ -61,7 +61,7 @@ class MatMeasures:
     solidity : float [-]
         Summed cylinder volume over the slab's volume: what fibers share counts twice.
     covered_fraction : float [-]
-        Part of the face that at least one fiber covers, by a grid of eight cells to a diameter (`pipeline.mat.relief`).
+        Part of the face that at least one fiber covers, by a grid of eight cells to a diameter.
     robust_thickness : float [m]
         Mean, over tiles of the face one mean radius wide, of the highest surface in the tile; tiles without a fiber
         are left out.
@@ -73,6 +73,9 @@ class MatMeasures:
         Mean of the outer product of the axis' direction with itself, by length; its trace is 1.
     diameters : DiameterMoments
     profile : SolidityProfile
+    frame_density : float [-], optional
+        Solid per plan area in the outer tenth of the plan on all sides, over that of the rest: 1 for an evenly dense
+        plan. None for a periodic plan, which has no frame, and where the frame is narrower than a mean diameter.
     """
 
     fibers: int
@@ -87,3 +90,4 @@ class MatMeasures:
     orientation: tuple[tuple[float, ...], ...]
     diameters: DiameterMoments
     profile: SolidityProfile
+    frame_density: float | None = None

@@ -9,15 +9,12 @@ from pipeline.geometry.box import Box
 from pipeline.geometry.crossings import self_intersections
 from pipeline.geometry.solids import Body, unite_within
 from pipeline.geometry.triangles import Floats, Ints
-from pipeline.nouns.fibers import Mat, Pieces
+from pipeline.nouns.fibers import ON_SIDE, Mat, Pieces
 from pipeline.nouns.surface import Surface
 from pipeline.progress import Progress, silent
 from pipeline.surface.joints import polygon_radius
 from pipeline.surface.settings import SurfaceSettings
 from pipeline.surface.tubes import Ends, tubes
-
-_ON_FACE = 1e-6
-"""Distance from a side, in radii, within which a fiber's end counts as lying on it: coordinates are rounded."""
 
 
 def unite(mat: Mat, settings: SurfaceSettings, progress: Progress = silent) -> Surface:
@@ -189,7 +186,7 @@ def _way_out(end: Floats, outward: Floats, radius: float, reach: float, slab: Bo
             gap = sign * (side - end[axis])
             if toward <= 1e-9:
                 continue
-            on_side |= bool(gap <= _ON_FACE * radius)
+            on_side |= bool(gap <= ON_SIDE * radius)
             tilt = np.sqrt(max(0.0, 1.0 - toward**2))
             lengths.append((gap + 1.05 * reach * tilt) / toward + 0.5 * radius)
     return on_side, max(float(min(lengths)), 0.0)

@@ -5,6 +5,7 @@
 import dataclasses
 import json
 import math
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -19,6 +20,9 @@ from pipeline.analytics.settings import FlowSettings
 from pipeline.analytics.tables.rows import comparison_tables
 from pipeline.errors import CaseError
 from pipeline.geometry.box import Box
+from pipeline.mat.array import array
+from pipeline.mat.measures import measure
+from pipeline.mat.settings import ArraySettings
 from pipeline.nouns.fibers import Mat
 from tests.surface.mats import CROSSING
 
@@ -48,6 +52,31 @@ MIXED = straight([0.5e-6] * 8 + [2e-6] * 4)
 def test_the_nominal_solidity_is_the_cylinders_volume_over_the_slab() -> None:
     exact = 12 * math.pi * (0.7e-6) ** 2 * SIDE / (SIDE * SIDE * THICKNESS)
     assert nominal_solidity(EQUAL) == pytest.approx(exact, rel=1e-12)
+
+
+@pytest.mark.parametrize("arrangement", ["square", "hexagonal"])
+@pytest.mark.parametrize("rows", [1, 2, 3, 6])
+@pytest.mark.parametrize("solidity", [0.01, 0.1, 0.3])
+def test_an_array_has_the_solidity_that_it_was_asked_for(
+    arrangement: Literal["square", "hexagonal"], rows: int, solidity: float
+) -> None:
+    # fibers in a symmetry plane count by half: counted whole, three rows of a hexagonal array had five thirds of it
+    mat = array(ArraySettings(arrangement=arrangement, solidity=solidity, fiber_diameter=1e-6, rows=rows))
+    assert nominal_solidity(mat) == pytest.approx(solidity, rel=1e-12)
+    assert measure(mat).solidity == pytest.approx(solidity, rel=1e-12)
+    # and so the length per row, which the drag per length is told of, is the slab's depth
+    length = nominal_solidity(mat) * mat.slab.volume / (math.pi * float(mat.radius[0]) ** 2)
+    assert length == pytest.approx(rows * mat.slab.size[1], rel=1e-12)
+
+
+def test_half_fibers_weigh_half_in_every_mean() -> None:
+    # one of 1 um within, two halves of 3 um in the sides: by length 2 um, as if whole ones of each stood alternately
+    line = [(5e-6, 0, 5e-6), (5e-6, 1e-5, 5e-6), (0, 0, 5e-6), (0, 1e-5, 5e-6), (1e-5, 0, 5e-6), (1e-5, 1e-5, 5e-6)]
+    slab = Box((0.0, 0.0, 0.0), (1e-5, 1e-5, 1e-5))
+    mat = Mat(np.array(line), np.array([0, 2, 4, 6]), np.array([0.5e-6, 1.5e-6, 1.5e-6]), slab, -1, "test")
+    assert mat_diameters(mat, FLOW, 0.1)["count"] == pytest.approx(2e-6, rel=1e-12)
+    assert measure(mat).diameters.length_weighted == pytest.approx(2e-6, rel=1e-12)
+    assert measure(mat).coverage == pytest.approx(0.4, rel=1e-12)
 
 
 @pytest.mark.parametrize("name", list(MODELS))

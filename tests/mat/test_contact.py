@@ -14,9 +14,9 @@ from pipeline.errors import CaseError
 from pipeline.geometry.box import Box
 from pipeline.geometry.triangles import Floats
 from pipeline.mat.audit import audit
+from pipeline.mat.deposit import Deposit, as_chord, drop
 from pipeline.mat.generate import generate
 from pipeline.mat.neighbors import near_fibers
-from pipeline.mat.pile import Pile, as_chord, drop
 from pipeline.mat.settings import Constant, LayeredSettings, Stop
 from pipeline.nouns.fibers import Mat
 
@@ -127,23 +127,23 @@ def test_in_a_thick_mat_of_the_paper_no_fiber_sinks_under_one_that_it_crosses() 
 @pytest.mark.parametrize("contact", ["paper", "clear"])
 def test_an_old_fiber_at_the_bottom_still_bears_where_the_new_ones_do_not_lie(contact: Any) -> None:
     # the oldest fiber lies alone on the ground, 1500 newer ones high up on one heap beside it
-    pile = Pile()
+    deposit = Deposit()
     for x, z in [(80.0, 0.5)] + 1500 * [(20.0, 10.0)]:
         ends = np.array([[x, 0.0], [x, 100.0]])
-        pile.add(ends, as_chord(ends), 0.5, np.array([[0.0, z], [100.0, z]]))
-    nodes = drop(pile, as_chord(np.array([[0.0, 50.0], [100.0, 50.0]])), 0.5, 1.0, contact, 0.0)
+        deposit.add(ends, as_chord(ends), 0.5, np.array([[0.0, z], [100.0, z]]))
+    nodes = drop(deposit, as_chord(np.array([[0.0, 50.0], [100.0, 50.0]])), 0.5, 1.0, contact, 0.0)
     over = 1.0 if contact == "paper" else math.sqrt(2)
     assert np.interp([20, 50, 80], nodes[:, 0], nodes[:, 1]) == pytest.approx([10 + over, 0.5, 0.5 + over])
 
 
 def over_one(angle: float, slope: float, contact: Any) -> Floats:
     """A fiber laid at an angle over the middle of a fiber on the ground, both of radius 0.5 and 100 long."""
-    pile = Pile()
+    deposit = Deposit()
     ends = np.array([[0.0, 0.0], [100.0, 0.0]])
-    pile.add(ends, as_chord(ends), 0.5, np.array([[0.0, 0.5], [100.0, 0.5]]))
+    deposit.add(ends, as_chord(ends), 0.5, np.array([[0.0, 0.5], [100.0, 0.5]]))
     along = 50 * np.array([math.cos(angle), math.sin(angle)])
     chord = as_chord(np.array([50 - along[0], -along[1], 50 + along[0], along[1]]).reshape(2, 2))
-    return drop(pile, chord, 0.5, slope, contact, 0.0)
+    return drop(deposit, chord, 0.5, slope, contact, 0.0)
 
 
 @pytest.mark.parametrize("angle", [math.pi / 2, 1.0, 0.6])
@@ -160,15 +160,15 @@ def test_the_apex_over_a_level_fiber_has_its_closed_height(angle: float, slope: 
 
 def test_a_fiber_beside_another_climbs_only_in_clear_mats() -> None:
     # parallel chords half a diameter apart never cross: the paper lays both on the ground
-    pile = Pile()
+    deposit = Deposit()
     ends = np.array([[0.0, 0.0], [100.0, 0.0]])
-    pile.add(ends, as_chord(ends), 0.5, np.array([[0.0, 0.5], [100.0, 0.5]]))
+    deposit.add(ends, as_chord(ends), 0.5, np.array([[0.0, 0.5], [100.0, 0.5]]))
     beside = as_chord(ends + np.array([0.0, 0.5]))
-    assert drop(pile, beside, 0.5, 0.15, "paper", 0.0)[:, 1].max() == 0.5
+    assert drop(deposit, beside, 0.5, 0.15, "paper", 0.0)[:, 1].max() == 0.5
     # slope 0 would stand exactly on the circle; cut at 4 R the tents stand a little higher
     level = 0.5 + math.sqrt(1 - 0.25)
-    assert drop(pile, beside, 0.5, 0.0, "clear", 0.0)[:, 1] == pytest.approx([level, level])
-    assert 1.0 < drop(pile, beside, 0.5, 0.15, "clear", 0.0)[:, 1].min() < level + 4 * 0.15 + 0.1
+    assert drop(deposit, beside, 0.5, 0.0, "clear", 0.0)[:, 1] == pytest.approx([level, level])
+    assert 1.0 < drop(deposit, beside, 0.5, 0.15, "clear", 0.0)[:, 1].min() < level + 4 * 0.15 + 0.1
 
 
 @pytest.mark.parametrize("contact", ["paper", "clear"])
@@ -179,11 +179,11 @@ def test_a_pile_does_not_mind_where_it_lies(contact: Any, seed: int, shift: tupl
     ends = rng.random((30, 2, 2)) * 20
     heights = []
     for moved in (ends, ends + np.array(shift)):
-        pile = Pile()
+        deposit = Deposit()
         for pair in moved:
             chord = as_chord(pair)
-            pile.add(pair, chord, 0.5, drop(pile, chord, 0.5, 0.15, contact, 0.1))
-        heights.append(pile.points()[:, 2].max())
+            deposit.add(pair, chord, 0.5, drop(deposit, chord, 0.5, 0.15, contact, 0.1))
+        heights.append(deposit.points()[:, 2].max())
     assert heights[1] == pytest.approx(heights[0], rel=1e-6)
 
 

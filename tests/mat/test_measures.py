@@ -11,9 +11,9 @@ import pytest
 
 from pipeline.geometry.box import Box
 from pipeline.mat.generate import generate
+from pipeline.mat.heights import surface_heights
 from pipeline.mat.layers import solidity_profile
 from pipeline.mat.measures import measure
-from pipeline.mat.relief import relief
 from pipeline.mat.settings import ArraySettings, Constant, LayeredSettings, Stop
 from pipeline.nouns.fibers import Mat
 
@@ -61,7 +61,7 @@ def test_an_oblique_fiber_covers_its_strip_up_to_the_sides(angle: float) -> None
 
 def test_the_relief_is_the_surface_of_the_fibers() -> None:
     mat = mat_of(ONE, 1.0, UNIT)
-    tops = relief(mat)
+    tops = surface_heights(mat)
     y = (np.arange(tops.shape[1]) + 0.5) * 10 / tops.shape[1] - 5
     expected = np.where(np.abs(y) < 1, 5 + np.sqrt(np.maximum(1 - y**2, 0)), np.nan)
     assert tops[3] == pytest.approx(expected, nan_ok=True)
@@ -69,7 +69,7 @@ def test_the_relief_is_the_surface_of_the_fibers() -> None:
 
 def test_a_periodic_fiber_covers_on_both_sides() -> None:
     across = mat_of([[8.0, 5.0, 5.0], [13.0, 5.0, 5.0]], 1.0, UNIT, periodic=True)
-    tops = np.isfinite(relief(across))
+    tops = np.isfinite(surface_heights(across))
     assert tops.mean() == pytest.approx(0.1)
     assert tops[: len(tops) * 3 // 10].mean() == pytest.approx(0.2)
 
@@ -151,3 +151,81 @@ def test_half_of_a_fiber_in_a_side_plane_counts() -> None:
 def test_the_measures_become_json() -> None:
     text = json.dumps(dataclasses.asdict(measure(mat_of(ONE, 1.0, UNIT))), allow_nan=False)
     assert json.loads(text)["diameters"]["mean"] == 2
+
+
+@pytest.mark.parametrize("ends", [(0.0, 6.0), (6.0, 0.0), (2.0, 3.0)])
+def test_a_fiber_along_the_flow_covers_its_disc(ends: tuple[float, float]) -> None:
+    mat = mat_of([[5.0, 5.0, ends[0]], [5.0, 5.0, ends[1]]], 1.0, Box((0, 0, 0), (10, 10, 6)))
+    m = measure(mat)
+    json.dumps(dataclasses.asdict(m), allow_nan=False)
+    # 4 cells to the radius: the disc to a tenth
+    assert m.covered_fraction == pytest.approx(math.pi / 100, rel=0.1)
+    assert m.robust_thickness == pytest.approx(max(ends))
+    assert m.solidity == pytest.approx(math.pi * abs(ends[1] - ends[0]) / 600, rel=1e-12)
+    assert np.array(m.orientation).tolist() == [[0, 0, 0], [0, 0, 0], [0, 0, 1]]
+
+
+def test_the_heights_are_those_that_rays_find() -> None:
+    # fibers in all directions, with a bend each: every tenth cell against many points of the capsules and flat ends
+    rng = np.random.default_rng(8)
+    nodes = rng.uniform(2, 8, (12, 3))
+    nodes[3:6, :2] = (5.0, 5.0) + 1e-3 * rng.normal(size=(3, 2))
+    mat = Mat(nodes, np.arange(0, 13, 3), np.array([0.5, 0.8, 0.3, 1.0]), UNIT, -1, "test")
+    tops = surface_heights(mat)
+    z = np.linspace(0, 11, 4000)
+    nx, ny = tops.shape
+    for i, j in zip(*np.unravel_index(np.arange(0, nx * ny, 7), tops.shape), strict=True):
+        points = np.column_stack([np.full_like(z, (i + 0.5) * 10 / nx), np.full_like(z, (j + 0.5) * 10 / ny), z])
+        inside = np.zeros(len(z), dtype=bool)
+        for k in range(4):
+            line = mat.nodes[3 * k : 3 * k + 3]
+            for n in range(2):
+                step = line[n + 1] - line[n]
+                share = (points - line[n]) @ step / (step @ step)
+                near = np.linalg.norm(points - line[n] - share[:, None] * step, axis=1) < mat.radius[k]
+                inside |= near & (share >= 0) & (share <= 1)
+            inside |= np.linalg.norm(points - line[1], axis=1) < mat.radius[k]
+        if inside.any():
+            assert tops[i, j] == pytest.approx(z[inside].max(), abs=0.004)
+        else:
+            assert np.isnan(tops[i, j]) or not inside.any()
+
+
+def test_fibers_thinner_than_the_grid_have_measures_too() -> None:
+    thin = mat_of([[0.0, 5.00001, 5.0], [10.0, 5.00001, 5.0]], 1e-5, UNIT)
+    m = measure(thin)
+    assert m.covered_fraction == 0
+    assert m.robust_thickness == m.thickness
+
+
+def test_the_frame_of_a_plan_is_told() -> None:
+    # one fiber in the frame, one across the middle: 1 + .2 of the lengths in 36 % of the plan, .8 in 64 %
+    two = mat_of([[0.0, 0.5, 5.0], [10.0, 0.5, 5.0], *ONE], 0.1, UNIT)
+    assert measure(two).frame_density == pytest.approx((1.2 / 0.36) / (0.8 / 0.64), rel=1e-12)
+    assert measure(mat_of(ONE, 1.0, UNIT)).frame_density is None
+    assert measure(mat_of(ONE, 0.1, UNIT, periodic=True)).frame_density is None
+    assert measure(mat_of([[0.0, 0.5, 5.0], [10.0, 0.5, 5.0]], 0.1, UNIT)).frame_density is None
+
+
+def test_perimeter_chords_make_the_frame_denser_and_isotropic_ones_do_not() -> None:
+    base = LayeredSettings(
+        side=5e-5, fiber_diameter=Constant(diameter=1e-6), relaxation_slope=0.15, stop=Stop(count=400)
+    )
+    densities = {}
+    for orientation in ("perimeter", "isotropic"):
+        settings = LayeredSettings.model_validate(base.model_dump() | {"orientation": orientation})
+        found = [measure(generate(settings.model_copy(update={"seed": seed}))).frame_density for seed in range(4)]
+        densities[orientation] = float(np.mean([each for each in found if each is not None]))
+    assert densities["isotropic"] == pytest.approx(1.0, abs=0.03)
+    # points along chords of the unit square that are drawn here: one in three joins opposite edges
+    rng = np.random.default_rng(3)
+    start, end = rng.random((2, 60_000))
+    across = rng.random(60_000) < 1 / 3
+    corner = (
+        np.stack([np.zeros_like(start), start], 1),
+        np.stack([np.where(across, 1.0, end), np.where(across, end, 0)], 1),
+    )
+    weight = np.linalg.norm(corner[1] - corner[0], axis=1)
+    points = corner[0] + rng.random((60_000, 1)) * (corner[1] - corner[0])
+    outside = float(weight[np.abs(points - 0.5).max(axis=1) > 0.4].sum() / weight.sum())
+    assert densities["perimeter"] == pytest.approx(outside / 0.36 / ((1 - outside) / 0.64), abs=0.03)

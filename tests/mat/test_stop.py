@@ -14,7 +14,7 @@ from pipeline.errors import CaseError
 from pipeline.mat.generate import generate
 from pipeline.mat.measures import measure
 from pipeline.mat.settings import BoxSettings, LayeredSettings, Stop
-from pipeline.mat.tally import report_stop
+from pipeline.mat.sums import report_stop
 from pipeline.nouns.mat_measures import MatMeasures
 
 SLOW = FlowSettings(face_velocity=0.025, preset="paper", pressure_model="davies")

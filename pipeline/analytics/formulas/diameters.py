@@ -56,7 +56,7 @@ def mat_diameters(mat: Mat, flow: Flow, solidity: float) -> dict[str, float]:
         drag of all fibers added up, each in Kuwabara's cell with the slip of its own diameter.
     """
     diameter = 2.0 * mat.radius[mat.segment_fibers()]
-    length = mat.segment_lengths()
+    length = mat.inside_lengths()
     means = mean_diameters(diameter, length)
     slip_length = slip.slip_length(slip.knudsen(flow.mean_free_path, diameter))
     # F* of each fiber over that of one without slip; the drag adds up over the length

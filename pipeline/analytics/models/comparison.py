@@ -18,9 +18,9 @@ REFERENCE = "davies"
 
 
 def nominal_solidity(mat: Mat) -> float:
-    """Volume of all the fibers' cylinders over the slab's volume, overlaps counted twice [-]."""
+    """Volume of all the fibers' cylinders within the plan over the slab's volume, overlaps counted twice [-]."""
     section = math.pi * mat.radius[mat.segment_fibers()] ** 2
-    return float((section * mat.segment_lengths()).sum()) / mat.slab.volume
+    return float((section * mat.inside_lengths()).sum()) / mat.slab.volume
 
 
 def compare(mat: Mat, surface_solidity: float, mesh_solidity: float, flow: Flow) -> Comparison:

@@ -12,7 +12,7 @@ _PER_DIAMETER = 8
 _FINEST = 2048
 
 
-def relief(mat: Mat) -> Floats:
+def surface_heights(mat: Mat) -> Floats:
     """Give the height of the highest fiber surface over the middle of each cell of a grid over the plan.
 
     Parameters
@@ -50,12 +50,16 @@ def mean_top(mat: Mat, tops: Floats) -> float:
     ----------
     mat : Mat
     tops : (nx, ny) array [m]
-        As `relief` gives it.
+        As `surface_heights` gives it.
 
     Returns
     -------
     float [m]
+        The slab's thickness where no tile has one.
     """
+    if np.isnan(tops).all():
+        # fibers so thin that no cell's middle lies under one
+        return mat.thickness
     wide = max(1, round(float(mat.radius.mean()) * len(tops) / mat.slab.size[0]))
     nx, ny = (-(-count // wide) for count in tops.shape)
     padded = np.full((nx * wide, ny * wide), -np.inf)
@@ -67,13 +71,13 @@ def mean_top(mat: Mat, tops: Floats) -> float:
 def _beyond(mat: Mat) -> Floats:
     """How far each segment reaches beyond its start and its end [m], (segments, 2).
 
-    To the next segment of its fiber: a radius, which closes the bend. At an end on a side of the plan: until its whole
-    width has left the plan. At an end inside: not at all.
+    At an end on a side of the plan: until its whole width has left the plan. At an end inside: not at all. Toward the
+    next segment of its fiber: -1, for the ball that closes the bend.
     """
     start = mat.segment_starts()
     fiber = mat.segment_fibers()
     radius = mat.radius[fiber]
-    beyond = np.repeat(radius[:, None], 2, axis=1)
+    beyond = np.full((len(radius), 2), -1.0)
     for column, node, is_end in (
         (0, start, start == mat.first[fiber]),
         (1, start + 1, start + 1 == mat.first[fiber + 1] - 1),
@@ -94,22 +98,30 @@ def _beyond(mat: Mat) -> Floats:
 def _raise(
     begin: Floats, end: Floats, radius: Floats, beyond: Floats, cell: Floats, periodic: bool, tops: Floats
 ) -> None:
-    """Raise the heights in `tops` to the surfaces of the segments, cell by cell across each."""
+    """Raise the heights in `tops` to the surfaces of the segments, cell by cell around each."""
     at = np.empty(2, np.int64)
     for k in range(len(begin)):
         r = radius[k]
         plan = np.sqrt((end[k, 0] - begin[k, 0]) ** 2 + (end[k, 1] - begin[k, 1]) ** 2)
-        if plan == 0.0:
-            continue
+        length = np.sqrt(plan * plan + (end[k, 2] - begin[k, 2]) ** 2)
+        level, rise = plan / length, (end[k, 2] - begin[k, 2]) / length
         # walk along the axis that the segment follows more closely, and at each step across it
         major = 0 if abs(end[k, 0] - begin[k, 0]) >= abs(end[k, 1] - begin[k, 1]) else 1
         minor = 1 - major
-        run, drift = (end[k, major] - begin[k, major]) / plan, (end[k, minor] - begin[k, minor]) / plan
-        rise = (end[k, 2] - begin[k, 2]) / plan
-        bulge = np.sqrt(1.0 + rise * rise)
-        first, last = -beyond[k, 0], plan + beyond[k, 1]
-        low = min(begin[k, major] + first * run, begin[k, major] + last * run) - r
-        high = max(begin[k, major] + first * run, begin[k, major] + last * run) + r
+        # one along z has no direction in plan: any will do
+        run, drift = 1.0, 0.0
+        if plan > 0.0:
+            run, drift = (end[k, major] - begin[k, major]) / plan, (end[k, minor] - begin[k, minor]) / plan
+        ball_before, ball_after = beyond[k, 0] < 0.0, beyond[k, 1] < 0.0
+        # places along the axis, in space, where the cylinder begins and ends
+        first, last = 0.0, length
+        if not ball_before and level > 0.0:
+            first = -beyond[k, 0] / level
+        if not ball_after and level > 0.0:
+            last = length + beyond[k, 1] / level
+        reach = r * np.sqrt(2.0)
+        low = min(begin[k, major] + first * level * run, begin[k, major] + last * level * run) - reach
+        high = max(begin[k, major] + first * level * run, begin[k, major] + last * level * run) + reach
         for i in range(int(np.floor(low / cell[major])), int(np.floor(high / cell[major])) + 1):
             if not periodic and (i < 0 or i >= tops.shape[major]):
                 continue
@@ -122,14 +134,41 @@ def _raise(
                 across = (j + 0.5) * cell[minor] - begin[k, minor]
                 t = along * run + across * drift
                 rho = across * run - along * drift
-                if t < first or t > last or rho * rho >= r * r:
+                if rho * rho >= r * r:
                     continue
-                over = min(t, 0.0) + max(t - plan, 0.0)
-                top = begin[k, 2] + rise * t + bulge * np.sqrt(r * r - rho * rho)
-                # beyond a bend the fiber is a ball
-                if (t < 0.0 and beyond[k, 0] == r) or (t > plan and beyond[k, 1] == r):
-                    if rho * rho + over * over >= r * r:
-                        continue
-                    top = begin[k, 2] + rise * (t - over) + np.sqrt(r * r - rho * rho - over * over)
+                top = _top(t, np.sqrt(r * r - rho * rho), level, rise, first, last)
+                if ball_before:
+                    top = max(top, _ball(t, rho, r))
+                if ball_after:
+                    top = max(top, rise * length + _ball(t - plan, rho, r))
+                if top == -np.inf:
+                    continue
                 at[major], at[minor] = i % tops.shape[major], j % tops.shape[minor]
-                tops[at[0], at[1]] = max(tops[at[0], at[1]], top)
+                tops[at[0], at[1]] = max(tops[at[0], at[1]], begin[k, 2] + top)
+
+
+@compiled
+def _top(t: float, half: float, level: float, rise: float, first: float, last: float) -> float:
+    """Height, over the axis' start, at which a line along z leaves a cylinder with flat ends; -inf where it misses.
+
+    The line stands at the place `t` along the axis in plan, where the cylinder is `half` wide to both sides of the
+    axis. (level, rise) is the axis' direction, and `first` to `last` the places along it between the ends.
+    """
+    low, high = -np.inf, np.inf
+    if level > 1e-9:
+        low, high = (t * rise - half) / level, (t * rise + half) / level
+    elif abs(t) >= half:
+        return -np.inf
+    if abs(rise) > 1e-9:
+        one, other = (first - t * level) / rise, (last - t * level) / rise
+        low, high = max(low, min(one, other)), min(high, max(one, other))
+    elif t * level < first or t * level > last:
+        return -np.inf
+    return high if low < high else -np.inf
+
+
+@compiled
+def _ball(t: float, rho: float, r: float) -> float:
+    """Height of a ball's top over its middle at a place in plan; -inf beside it."""
+    left = r * r - t * t - rho * rho
+    return float(np.sqrt(left)) if left > 0.0 else -np.inf

@@ -14,7 +14,7 @@ from pipeline.mat.profile import profile
 _Scalar = TypeVar("_Scalar", bound=np.generic)
 
 
-class Pile:
+class Deposit:
     """A growing store of fibers that are straight in plan.
 
     Arrays are larger than what they hold: `count` fibers, ``first[count]`` nodes.
@@ -78,13 +78,13 @@ def as_chord(ends: Floats) -> Floats:
 
 
 def drop(
-    pile: Pile, chord: Floats, radius: float, slope: float, contact: Literal["paper", "clear"], spacing: float
+    deposit: Deposit, chord: Floats, radius: float, slope: float, contact: Literal["paper", "clear"], spacing: float
 ) -> Floats:
-    """Let a straight chord fall onto the pile and bend over it.
+    """Let a straight chord fall onto the deposit and bend over it.
 
     Parameters
     ----------
-    pile : Pile
+    deposit : Deposit
     chord : (5,) array [m, m, -, -, m]
         As `as_chord` gives it.
     radius : float [m]
@@ -99,17 +99,17 @@ def drop(
     (nodes, 2) array [m]
         Place along the chord and height of each vertex.
     """
-    count = pile.count
+    count = deposit.count
     found = supports(
         chord,
         radius,
-        pile.chords[:count],
-        pile.radius[:count],
-        pile.peaks[:count],
-        pile.first[: count + 1],
-        pile.nodes,
+        deposit.chords[:count],
+        deposit.radius[:count],
+        deposit.peaks[:count],
+        deposit.first[: count + 1],
+        deposit.nodes,
         spacing,
-        pile.period,
+        deposit.period,
         slope,
         contact == "clear",
     )

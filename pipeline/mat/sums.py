@@ -14,7 +14,7 @@ Predict = Callable[[float, float, float], float]
 
 
 @dataclass(slots=True)
-class Tally:
+class RunningSums:
     """Sums that make every stop's quantity available after each fiber at the same small cost.
 
     Parameters
