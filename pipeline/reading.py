@@ -15,6 +15,11 @@ _WORDS = {stat.S_IFIFO: "a pipe", stat.S_IFCHR: "a device", stat.S_IFBLK: "a dev
 _LINK = "a link"
 
 
+def is_text(name: str) -> bool:
+    """Whether a name is text in UTF-8, as any sequence of bytes may name a file but not everything can say it."""
+    return not any("\ud800" <= letter <= "\udfff" for letter in name)
+
+
 def open_file(path: Path, links: bool = True) -> io.BufferedReader:
     """Open a file for reading.
 

@@ -4,6 +4,7 @@
 
 import importlib.metadata
 import json
+import os
 import sys
 from pathlib import Path
 from typing import Annotated, Literal
@@ -13,7 +14,8 @@ from rich.console import Console
 
 from pipeline.cli.bundled import found
 from pipeline.cli.printable import printable
-from pipeline.errors import FibertwinError
+from pipeline.errors import CaseError, FibertwinError
+from pipeline.reading import is_text
 
 app = App(
     name="fibertwin",
@@ -463,9 +465,21 @@ def doctor() -> None:
         raise SystemExit(1)
 
 
+def _refuse_odd_names(words: list[str]) -> None:
+    """Refuse names that are no text, which neither VTK nor a page nor JSON can take, before anything is made."""
+    try:
+        here = os.getcwd()  # noqa: PTH109 (its text, not its path)
+    except FileNotFoundError:
+        raise CaseError("the current folder has been removed; change to another") from None
+    for word in (*words, here):
+        if not is_text(word):
+            raise CaseError(f"{word!r} is no text in UTF-8: rename it, or choose another folder")
+
+
 def main() -> None:
     """Run the command line: a user's mistake becomes one message and an exit code, a bug keeps its traceback."""
     try:
+        _refuse_odd_names(sys.argv[1:])
         app(sys.argv[1:], exit_on_error=False, print_error=False)
         # or the interpreter would find at its very end that the disk is full
         sys.stdout.flush()

@@ -19,6 +19,7 @@ from typing import IO
 
 from pipeline import machine
 from pipeline.errors import StageError
+from pipeline.reading import is_text
 from pipeline.scratch import sweep
 
 MANIFEST = "manifest.json"
@@ -145,6 +146,8 @@ def locked(folder: Path) -> Iterator[None]:
     StageError
         If another process is running in the folder, or the folder cannot be written.
     """
+    if not is_text(str(folder.absolute())):
+        raise StageError(f"{str(folder)!r} is no text in UTF-8, which VTK and the page need; choose another folder")
     try:
         if folder.exists() and not folder.is_dir():
             raise StageError(f"{folder} is a file; choose another folder with --out")

@@ -55,7 +55,7 @@ def test_an_encoding_that_lacks_letters_gets_others(tmp_path: Path) -> None:
     # and a name that is no text at all
     done = in_shell(f"{FIBERTWIN} run $'caf\\xe9.toml'", tmp_path, PYTHONIOENCODING="ascii")
     assert done.returncode == 2
-    assert done.stderr.startswith("error: there is no file caf?.toml")
+    assert done.stderr.startswith("error: 'caf\\udce9.toml' is no text in UTF-8")
 
 
 def test_a_test_keeps_its_own_output(tmp_path: Path) -> None:
@@ -65,3 +65,19 @@ def test_a_test_keeps_its_own_output(tmp_path: Path) -> None:
         "assert isinstance(sys.stdout, io.StringIO)"
     )
     subprocess.run([sys.executable, "-c", script], env=marked.environment, check=True)
+
+
+@pytest.mark.parametrize("place", ["--out $'caf\\xe9/run'", "current folder"])
+def test_a_name_that_is_no_text_is_refused_before_anything_is_made(place: str, tmp_path: Path) -> None:
+    words = f"run smoke --until mat {place if place != 'current folder' else ''}"
+    go = "mkdir $'caf\\xe9'; cd $'caf\\xe9'; " if place == "current folder" else ""
+    done = in_shell(f"{go}{FIBERTWIN} {words}", tmp_path)
+    assert done.returncode == 2
+    assert "is no text in UTF-8" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not list(tmp_path.rglob("mat"))
+
+
+def test_a_current_folder_that_is_gone_is_one_error(tmp_path: Path) -> None:
+    done = in_shell(f"mkdir gone; cd gone; rmdir ../gone; {FIBERTWIN} cases", tmp_path)
+    assert (done.returncode, done.stderr) == (2, "error: the current folder has been removed; change to another\n")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from pipeline.errors import StageError
 from pipeline.line import places
 from pipeline.line.places import locked, own_file, own_folder, remove, side_folder, write_text
 
@@ -159,3 +160,9 @@ def test_a_run_waits_for_what_a_killed_one_had_started(tmp_path: Path) -> None:
     with locked(tmp_path):
         size = (tmp_path / "written").stat().st_size
     assert (tmp_path / "written").stat().st_size == size
+
+
+def test_a_folder_whose_name_is_no_text_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(StageError, match="no text in UTF-8"), locked(tmp_path / "caf\udce9"):
+        pass
+    assert list(tmp_path.iterdir()) == []
