@@ -4,6 +4,9 @@
 
 from typing import Protocol
 
+NOTE = "note: "
+"""How that begins which is to stay where a person reads it."""
+
 
 class Progress(Protocol):
     """Called by a stage whenever there is something to tell."""

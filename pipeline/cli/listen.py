@@ -10,8 +10,8 @@ from contextlib import contextmanager
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
+from pipeline.progress import NOTE, silent
 from pipeline.progress import Progress as Tell
-from pipeline.progress import silent
 
 _GAP = 5.0  # seconds between two plain lines, so that a log stays readable
 
@@ -31,7 +31,14 @@ def listening(console: Console, quiet: bool) -> Iterator[Tell]:
             transient=True,
         ) as live:
             task = live.add_task("starting", total=None)
-            yield lambda what, done=None: live.update(task, description=what, total=1.0, completed=done or 0.0)
+
+            def tell(what: str, done: float | None = None) -> None:
+                if what.startswith(NOTE):
+                    live.console.print(what, markup=False, highlight=False, soft_wrap=True)
+                else:
+                    live.update(task, description=what, total=1.0, completed=done or 0.0)
+
+            yield tell
     else:
         yield _plain(console)
 
@@ -42,7 +49,7 @@ def _plain(console: Console) -> Tell:
     def tell(what: str, done: float | None = None) -> None:
         nonlocal last
         now = time.monotonic()
-        if now - last >= _GAP:
+        if now - last >= _GAP or what.startswith(NOTE):
             last = now
             share = f" {done:.0%}" if done is not None else ""
             console.print(f"  {what}{share}", markup=False, highlight=False, soft_wrap=True)

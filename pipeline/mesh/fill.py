@@ -5,13 +5,16 @@
 from dataclasses import replace
 from pathlib import Path
 
-from pipeline.errors import StageError
+from pipeline.mesh.engines.flawed import FlawedMeshError
+from pipeline.mesh.estimate import slenderness
 from pipeline.mesh.settings import TetmeshSettings
 from pipeline.mesh.wall_error import fidelity
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.mesh_measures import TetmeshMeasures
-from pipeline.progress import Progress, silent
+from pipeline.progress import NOTE, Progress, silent
+
+_LONG = 180.0  # seconds of processor time that are said before they are spent
 
 
 def fill(
@@ -34,25 +37,46 @@ def fill(
     Raises
     ------
     StageError
-        If the engine fails, or the fibers' volume or their walls are further off than the settings allow.
+        If the engine fails, or leaves cells without volume, or the fibers' volume or their walls are further off than
+        the settings allow, however often it is run.
     """
     engine = settings.mesher
-    for _ in range(engine.tries):
-        mesh, measures = engine.mesh(domain, settings, tell, folder)
-        if abs(measures.volume_error) > settings.volume_error:
-            raise StageError(
-                f"the mesh keeps the fibers' volume to {measures.volume_error:+.2%}, allowed is "
-                f"{settings.volume_error:.2%}; {engine.truer}, or raise tetmesh.volume_error"
-            )
-        tell("measuring the walls", 0.95)
-        found = fidelity(mesh, domain)
-        faults = found.faults(settings.deviation)
-        if not faults:
-            return mesh, replace(measures, fidelity=found)
-    raise StageError(
-        f"the mesh does not keep the fibers: {'; '.join(faults)}; {engine.truer} (the edge is {settings.edge:g} "
-        f"diameters), or raise tetmesh.deviation (now {settings.deviation:g})"
-    )
+    expected = engine.estimate(slenderness(domain), settings)
+    if expected.seconds > _LONG:
+        tell(
+            f"{NOTE}{engine.name} will take about {expected.seconds / 60:.0f} minutes for some {expected.cells:,.2g} "
+            f"cells; {engine.quicker}"
+        )
+    for left in reversed(range(engine.tries)):
+        try:
+            return _sound(domain, settings, tell, folder)
+        except FlawedMeshError as flaw:
+            if not left:
+                raise FlawedMeshError(f"{flaw} ({engine.tries} runs)" if engine.tries > 1 else str(flaw)) from flaw
+            tell(f"meshing again, since {flaw}")
+    raise AssertionError("an engine is tried at least once")
+
+
+def _sound(
+    domain: FluidDomain, settings: TetmeshSettings, tell: Progress, folder: Path | None
+) -> tuple[FaceMesh, TetmeshMeasures]:
+    """Mesh once, and hold the mesh against the fibers."""
+    engine = settings.mesher
+    mesh, measures = engine.mesh(domain, settings, tell, folder)
+    if abs(measures.volume_error) > settings.volume_error:
+        raise FlawedMeshError(
+            f"the mesh keeps the fibers' volume to {measures.volume_error:+.2%}, allowed is "
+            f"{settings.volume_error:.2%}; {engine.truer}, or raise tetmesh.volume_error"
+        )
+    tell("measuring the walls", 0.95)
+    found = fidelity(mesh, domain)
+    faults = found.faults(settings.deviation)
+    if faults:
+        raise FlawedMeshError(
+            f"the mesh does not keep the fibers: {'; '.join(faults)}; {engine.truer} (the edge is {settings.edge:g} "
+            f"diameters), or raise tetmesh.deviation (now {settings.deviation:g})"
+        )
+    return mesh, replace(measures, fidelity=found)
 
 
 def engine_missing(settings: TetmeshSettings) -> str | None:

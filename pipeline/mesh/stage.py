@@ -18,5 +18,6 @@ TETMESH = Stage(
     records=("cost.json", "*.log", "log.*"),
     units={"volume_error": "%"},
     obstacle=Entry("pipeline.mesh.make:obstacle"),
+    estimate=Entry("pipeline.mesh.estimate:estimate"),
     section=Entry("pipeline.report.page.sections:mesh"),
 )

@@ -31,6 +31,17 @@ def test_without_a_terminal_a_line_is_printed_every_few_seconds(monkeypatch: pyt
     ]
 
 
+@pytest.mark.parametrize("terminal", [True, False])
+def test_a_note_stays_to_be_read_between_lines_that_do_not(terminal: bool) -> None:
+    written = io.StringIO()
+    with listen.listening(Console(file=written, force_terminal=terminal, width=200), quiet=False) as tell:
+        tell("tetmesh: preparing")
+        tell("note: this takes about 12 minutes; raise tetmesh.edge")
+        tell("tetmesh: meshing")
+    # a live line is drawn over; what was printed stands on a line of its own
+    assert "note: this takes about 12 minutes; raise tetmesh.edge\n" in written.getvalue()
+
+
 def test_quiet_is_quiet() -> None:
     written = io.StringIO()
     told(Console(file=written), quiet=True)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from pydantic import BaseModel, ConfigDict
 
 if TYPE_CHECKING:
+    from pipeline.line.stage import Estimate
     from pipeline.mesh.settings import TetmeshSettings
     from pipeline.nouns.domain import FluidDomain
     from pipeline.nouns.mesh import FaceMesh
@@ -46,8 +47,13 @@ class Engine:
         Gives what to set for better cells than these settings made, as ``table.key=value``.
     missing : callable
         Says why it cannot run on this machine and what to do, or None where it can.
+    estimate : callable
+        Gives cells, memory and processor time for fibers of a slenderness (the sum of length over diameter) and the
+        settings, within some ten percents.
+    quicker : str
+        What makes it quicker, as the end of a message.
     tries : int
-        How often it is run until walls stand on the fibers: an engine that differs each time may do better.
+        How often it is run until the mesh is sound: an engine that differs each time may do better.
     """
 
     name: str
@@ -56,5 +62,7 @@ class Engine:
     mesh: Callable[["FluidDomain", "TetmeshSettings", "Progress", Path | None], "tuple[FaceMesh, TetmeshMeasures]"]
     truer: str
     better: Callable[["TetmeshSettings"], tuple[str, ...]]
+    estimate: Callable[[float, "TetmeshSettings"], "Estimate"]
+    quicker: str
     missing: Callable[["TetmeshSettings"], str | None] = lambda settings: None
     tries: int = 1

@@ -34,7 +34,8 @@ def split_corners(points: Floats, tets: Ints, seam: Ints | None = None) -> tuple
     tets : (m, 4) int array
         Positive tetrahedra.
     seam : (k, 3) int array, optional
-        Faces behind which the mesh goes on, each with ascending corners: they are no boundary.
+        Faces behind which the mesh goes on, each with ascending corners: they are no boundary, and stay whole. A corner
+        whose edge lies on one stays too.
 
     Returns
     -------
@@ -50,7 +51,10 @@ def split_corners(points: Floats, tets: Ints, seam: Ints | None = None) -> tuple
         if len(three):
             points, tets = _with_centers(points, tets, three)
         elif len(two):
-            points, tets = _with_midpoints(points, tets, _opposite_edges(tets, faces, cell, two))
+            before = len(tets)
+            points, tets = _with_midpoints(points, tets, _opposite_edges(tets, faces, cell, two), seam)
+            if len(tets) == before:  # all of them at the seam
+                break
         else:
             break
     return points, tets
@@ -68,7 +72,9 @@ def true_boundary(tets: Ints, seam: Ints | None = None) -> tuple[Ints, Ints]:
     return faces[true], cell[true]
 
 
-def split_longest(points: Floats, tets: Ints, chosen: npt.NDArray[np.bool_]) -> tuple[Floats, Ints]:
+def split_longest(
+    points: Floats, tets: Ints, chosen: npt.NDArray[np.bool_], seam: Ints | None = None
+) -> tuple[Floats, Ints]:
     """Split the longest edge of some cells, which gives the mender a vertex more to move there.
 
     Parameters
@@ -77,6 +83,8 @@ def split_longest(points: Floats, tets: Ints, chosen: npt.NDArray[np.bool_]) -> 
     tets : (m, 4) int array
         Positive tetrahedra.
     chosen : (m,) bool array
+    seam : (k, 3) int array, optional
+        Faces behind which the mesh goes on: no edge of theirs is split, or a vertex would hang there.
 
     Returns
     -------
@@ -87,7 +95,7 @@ def split_longest(points: Floats, tets: Ints, chosen: npt.NDArray[np.bool_]) -> 
     ends = tets[chosen][:, _EDGES]
     lengths = np.linalg.norm(points[ends[..., 1]] - points[ends[..., 0]], axis=2)
     longest = ends[np.arange(len(ends)), lengths.argmax(axis=1)]
-    return _with_midpoints(points, tets, np.sort(longest, axis=1))
+    return _with_midpoints(points, tets, np.sort(longest, axis=1), seam)
 
 
 def _with_centers(points: Floats, tets: Ints, chosen: Ints) -> tuple[Floats, Ints]:
@@ -111,9 +119,14 @@ def _opposite_edges(tets: Ints, faces: Ints, owner: Ints, cells: Ints) -> Ints:
     return np.sort(corners[~shared].reshape(-1, 2), axis=1)
 
 
-def _with_midpoints(points: Floats, tets: Ints, edges: Ints) -> tuple[Floats, Ints]:
+def _with_midpoints(points: Floats, tets: Ints, edges: Ints, seam: Ints | None) -> tuple[Floats, Ints]:
     count = len(points)
     keys = np.unique(edges[:, 0] * count + edges[:, 1])
+    if seam is not None:
+        low, high = np.sort(seam[:, [[0, 1], [0, 2], [1, 2]]].reshape(-1, 2), axis=1).T
+        keys = np.setdiff1d(keys, low * count + high)
+    if len(keys) == 0:
+        return points, tets
     of_tets = np.sort(tets[:, _EDGES], axis=2)
     tet_keys = of_tets[..., 0] * count + of_tets[..., 1]
     place = np.minimum(np.searchsorted(keys, tet_keys), len(keys) - 1)

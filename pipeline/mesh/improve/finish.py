@@ -4,10 +4,10 @@
 
 import numpy as np
 
-from pipeline.errors import StageError
 from pipeline.geometry.tets import boundary, volumes
 from pipeline.mesh.boundary import assign
 from pipeline.mesh.distance import fiber_distance
+from pipeline.mesh.engines.flawed import FlawedMeshError
 from pipeline.mesh.engines.raw import RawMesh
 from pipeline.mesh.improve.fit import fitted
 from pipeline.mesh.improve.settle import Reaches, free_axes, settled
@@ -42,7 +42,7 @@ def finished(
 
     Raises
     ------
-    StageError
+    FlawedMeshError
         If cells without volume remain.
     """
     points, tets = used_points(raw.points, raw.tets)
@@ -94,20 +94,22 @@ def _check_patches(patch: Ints, domain: FluidDomain, settings: TetmeshSettings) 
     empty = [name for number, name in enumerate(domain.patches) if not (patch == number).any()]
     if FIBERS in empty:
         thickest = 2.0 * float(domain.radius.max())
-        raise StageError(
+        raise FlawedMeshError(
             f"the mesh resolves none of the {len(domain.radius)} fibers, the thickest {thickest * 1e6:.3g} um (fiber "
             f"{int(domain.radius.argmax())} of {len(domain.radius)}), with an edge of {settings.edge:g} diameters; "
             f"{settings.mesher.truer}"
         )
     if empty:
-        raise StageError(f"no air reaches {', '.join(empty)}: the fibers close the duct there; use a larger mat.side")
+        raise FlawedMeshError(
+            f"no air reaches {', '.join(empty)}: the fibers close the duct there; use a larger mat.side"
+        )
 
 
 def _check_volumes(points: Floats, tets: Ints, settings: TetmeshSettings) -> None:
     flat = np.flatnonzero(volumes(points, tets) <= 0.0)
     if len(flat):
         place = points[tets[flat[0]]].mean(axis=0) * 1e6
-        raise StageError(
+        raise FlawedMeshError(
             f"{len(flat)} of {len(tets)} tetrahedra have no volume, first at ({place[0]:.3g}, {place[1]:.3g}, "
             f"{place[2]:.3g}) um; {settings.mesher.truer}"
         )

@@ -149,7 +149,7 @@ def _settled_here(
         loose = np.union1d(loose, tets[crevice])
         tets, faulty = tets[~crevice], faulty[~crevice]
         if stuck and faulty.any():
-            points, tets = split_longest(points, tets, faulty)
+            points, tets = split_longest(points, tets, faulty, seam)
     return best
 
 

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 from pydantic import Field
 
+from pipeline.line.stage import Estimate
 from pipeline.mesh.engines.engine import Engine, EngineSettings
+from pipeline.mesh.estimate import field_cells
 from pipeline.units import Duration, PositiveRatio
 
 if TYPE_CHECKING:
@@ -52,12 +54,23 @@ def _mesh(
     return finished(tetrahedralized(domain, settings, unit, tell), domain, settings, tell)
 
 
+def _estimate(slender: float, settings: "TetmeshSettings") -> Estimate:
+    # measured on the default case at two edges and on cases/figure10_corner.toml: docs/meshing.md. The surface's
+    # triangles, some 46 per diameter of length, cost more than the cells do.
+    field = slender * field_cells(settings)
+    return Estimate(
+        76.0 * slender + 0.6 * field, 1.5e8 + 4.5e5 * slender + 500.0 * field, 1.0 + 0.04 * slender + 2.1e-4 * field
+    )
+
+
 TETWILD = Engine(
     name="tetwild",
     meaning="fTetWild: few cells, true walls; time grows faster than cells, and it differs a little from run to run",
     settings=TetwildSettings,
     mesh=_mesh,
     truer="lower tetmesh.tetwild.envelope or tetmesh.edge",
+    estimate=_estimate,
+    quicker='raise tetmesh.edge, or set tetmesh.engine = "lattice"',
     better=lambda settings: (f"tetmesh.tetwild.passes={2 * settings.own(TetwildSettings).passes}",),
     tries=3,
 )

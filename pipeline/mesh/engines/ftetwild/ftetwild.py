@@ -5,11 +5,11 @@
 import numpy as np
 
 from pipeline.child_process import Limits
-from pipeline.errors import StageError
 from pipeline.geometry.box import Box
 from pipeline.geometry.tets import boundary
 from pipeline.geometry.triangles import area_vectors
 from pipeline.mesh.boundary import assign, flattened, planes
+from pipeline.mesh.engines.flawed import FlawedMeshError
 from pipeline.mesh.engines.ftetwild.child import Meshed, run_child
 from pipeline.mesh.engines.ftetwild.engine import TetwildSettings
 from pipeline.mesh.engines.ftetwild.size_field import size_field
@@ -22,7 +22,6 @@ from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.patches import FIBERS
 from pipeline.progress import Progress
 
-_ATTEMPTS = 3  # of the mesher at keeping the duct's planes; its randomness differs each time
 _WALL_LEASH = 0.5  # envelopes that mending may move a vertex of a fiber
 _PLANE_ERROR = 0.01  # of a plane's area; rounding of the fibers' cuts takes a few thousandths
 
@@ -47,33 +46,31 @@ def tetrahedralized(domain: FluidDomain, settings: TetmeshSettings, unit: float,
     Raises
     ------
     StageError
-        If the mesher fails, exceeds a limit, or loses part of a plane.
+        If the mesher fails or exceeds a limit; FlawedMeshError where it loses part of a plane.
     """
     # fTetWild compares an area with 1e-8 of a length: only geometry of order one survives that
     middle = 0.5 * (np.array(domain.box.lower) + np.array(domain.box.upper))
     own = settings.own(TetwildSettings)
     envelope = own.envelope * 2.0 * float(domain.radius.min())
-    for _ in range(_ATTEMPTS):
-        raw = _run((domain.points - middle) / unit, domain, settings, tell)
-        tell("finding the patches")
-        points, tets = used_points(raw.points * unit + middle, raw.tets)
-        faces, _ = boundary(tets)
-        # two envelopes: the mesher bounds the distance to the surface, not the distance along the plane's normal
-        patch = assign(points, faces, domain.box, tolerance=2.0 * envelope)
-        points = flattened(points, faces, patch, domain.box)
-        tets = _without_flat_sides(points, tets, domain.box)
-        # fTetWild may leave triangles of its input out, by chance: a dent in a plane then counts as fiber, which the
-        # fibers' volume, fitted afterwards, does not show, and which raised a drag by half
-        errors = _plane_errors(points, tets, domain)
-        worst = max(errors, key=lambda name: abs(errors[name]))
-        if abs(errors[worst]) <= _PLANE_ERROR:
-            return RawMesh(points, tets, _WALL_LEASH * own.envelope, raw.seconds, raw.peak_memory)
-        tell(f"the mesher lost part of {worst}: meshing again")
-    raise StageError(
-        f"the mesher lost part of the patch {worst} {_ATTEMPTS} times, whose area is off by {errors[worst]:+.2%} "
-        f"(allowed: {_PLANE_ERROR:.0%}); raise tetmesh.tetwild.passes (now {own.passes}) "
-        "or tetmesh.tetwild.envelope, or lower surface.sides"
-    )
+    raw = _run((domain.points - middle) / unit, domain, settings, tell)
+    tell("finding the patches")
+    points, tets = used_points(raw.points * unit + middle, raw.tets)
+    faces, _ = boundary(tets)
+    # two envelopes: the mesher bounds the distance to the surface, not the distance along the plane's normal
+    patch = assign(points, faces, domain.box, tolerance=2.0 * envelope)
+    points = flattened(points, faces, patch, domain.box)
+    tets = _without_flat_sides(points, tets, domain.box)
+    # fTetWild may leave triangles of its input out, by chance: a dent in a plane then counts as fiber, which the
+    # fibers' volume, fitted afterwards, does not show, and which raised a drag by half
+    errors = _plane_errors(points, tets, domain)
+    worst = max(errors, key=lambda name: abs(errors[name]))
+    if abs(errors[worst]) > _PLANE_ERROR:
+        raise FlawedMeshError(
+            f"fTetWild lost part of the patch {worst}, whose area is off by {errors[worst]:+.2%} "
+            f"(allowed: {_PLANE_ERROR:.0%}); raise tetmesh.tetwild.passes (now {own.passes}) "
+            "or tetmesh.tetwild.envelope, or lower surface.sides"
+        )
+    return RawMesh(points, tets, _WALL_LEASH * own.envelope, raw.seconds, raw.peak_memory)
 
 
 def _plane_errors(points: Floats, tets: Ints, domain: FluidDomain) -> dict[str, float]:

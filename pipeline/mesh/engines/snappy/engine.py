@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 
 from pydantic import Field
 
+from pipeline.line.stage import Estimate
 from pipeline.mesh.engines.engine import Engine, EngineSettings
+from pipeline.mesh.estimate import field_cells
 from pipeline.units import Duration
 
 if TYPE_CHECKING:
@@ -42,6 +44,12 @@ def _missing(settings: "TetmeshSettings") -> str | None:
     return missing(settings.own(SnappySettings).cores)
 
 
+def _estimate(slender: float, settings: "TetmeshSettings") -> Estimate:
+    # measured on the default case: docs/meshing.md
+    cells = 1.4 * slender * field_cells(settings)
+    return Estimate(cells, 1e8 + 4500.0 * cells, 3.0 + 3e-4 * cells)
+
+
 SNAPPY = Engine(
     name="snappy",
     meaning="OpenFOAM's snappyHexMesh: hexahedra split near the fibers, on many cores and machines; OpenFOAM has to "
@@ -49,6 +57,8 @@ SNAPPY = Engine(
     settings=SnappySettings,
     mesh=_mesh,
     truer="lower tetmesh.edge",
+    estimate=_estimate,
+    quicker="raise tetmesh.edge or tetmesh.snappy.cores",
     better=lambda settings: (f"tetmesh.edge={0.75 * settings.edge:.3g}",),
     missing=_missing,
 )
