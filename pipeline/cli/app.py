@@ -109,6 +109,39 @@ def solve(
 
 
 @app.command
+def export(
+    run: Path,
+    *,
+    format_: Annotated[tuple[str, ...], Parameter(name=["--format", "-f"], negative="", consume_multiple=False)] = (),
+    out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+    set_: Annotated[tuple[str, ...], Parameter(name=["--set", "-s"], negative="", consume_multiple=False)] = (),
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    quiet: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Write files of a run that is there, in any format, without running it again.
+
+    Parameters
+    ----------
+    run
+        The folder of a run.
+    format_
+        openfoam, vtk, fluent, gmsh, abaqus, nastran, su2 or medit for the mesh; stl, ply or obj for the fibers'
+        surface; csv or spaceclaim for their center lines. May be repeated.
+    out
+        Folder that gets a folder per format; ``RUN/export`` if left out.
+    set_
+        Override a key of export: ``--set export.length_unit=mm``. May be repeated.
+    as_json
+        Print JSON: of each format its folder.
+    quiet
+        Print nothing but errors.
+    """
+    from pipeline.cli.exporting import export_run
+
+    export_run(run, format_, out, set_, as_json, quiet)
+
+
+@app.command
 def quality(
     mesh: Path,
     *,

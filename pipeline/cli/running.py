@@ -4,16 +4,17 @@
 
 import json
 import sys
+from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
 
 from rich.console import Console
 
-from pipeline.case import read_case
+from pipeline.case import Case, read_case
 from pipeline.cli.listen import listening
 from pipeline.cli.tables import outcome_table, prospect_table, result_tables
-from pipeline.errors import CaseError
-from pipeline.line.run import LAST, LINE, STAGES, Run, dry_run, run
+from pipeline.errors import CaseError, StageError
+from pipeline.line.run import LAST, LINE, STAGES, Outcome, Run, dry_run, run
 from pipeline.report.stage import PAGE
 
 
@@ -46,9 +47,29 @@ def run_case(
     if as_json:
         stages = [{**asdict(outcome), "folder": str(outcome.folder)} for outcome in outcomes]
         sys.stdout.write(json.dumps({"folder": str(folder), "stages": stages}, indent=2, allow_nan=False) + "\n")
-        return
-    if quiet:
-        return
+    elif not quiet:
+        _show(outcomes, case, folder, out)
+    _tell_failures(outcomes)
+
+
+def _tell_failures(outcomes: Iterable[Outcome]) -> None:
+    """End with an error where a stage left out a part of what it was asked for: the rest of the run is there.
+
+    Raises
+    ------
+    StageError
+    """
+    lacking = [
+        f"{outcome.stage}: cannot write {what}"
+        for outcome in outcomes
+        if isinstance(failed := outcome.counts.get("failed"), list)
+        for what in failed
+    ]
+    if lacking:
+        raise StageError("; ".join(lacking) + "; all else was made")
+
+
+def _show(outcomes: list[Outcome], case: Case, folder: Path, out: Console) -> None:
     out.print(outcome_table(outcomes, LINE))
     for table in result_tables(Run(case, folder), {each.stage for each in outcomes if each.how != "skipped"}):
         out.print(table)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
+from pipeline.cad.surfaces import LengthUnit
 from pipeline.export.formats.registry import WRITTEN, why_not
 from pipeline.openfoam.foam_file import Encoding
 
@@ -23,6 +24,11 @@ class ExportSettings(BaseModel):
 
     formats: tuple[Format, ...] = Field(
         default=("openfoam", "vtk"), min_length=1, description="Formats to write, each into its own folder."
+    )
+    length_unit: LengthUnit = Field(
+        default="um",
+        description="Unit of the fibers' surface in stl, ply and obj; drawing programs join points that are nearer "
+        "than some 1e-8 of their unit. Meshes are in meters.",
     )
     encoding: Encoding = Field(
         default="binary", description="How OpenFOAM's mesh is written; ascii has all 17 digits and ten times the size."

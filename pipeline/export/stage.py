@@ -4,8 +4,9 @@
 
 from typing import Any
 
+from pipeline.export.formats.registry import held
 from pipeline.export.settings import ExportSettings
-from pipeline.line.stage import Entry, Stage, needing
+from pipeline.line.stage import Entry, Stage
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.exports import OpenFoamCase
 from pipeline.nouns.mesh import FaceMesh
@@ -16,11 +17,15 @@ def _colors(case: Any) -> tuple[type, ...]:
     return (CellFields,) if "vtk" in case.export.formats else ()
 
 
+def _held(case: Any) -> tuple[type, ...]:
+    return tuple(dict.fromkeys((FaceMesh, FluidDomain, *held(case.export.formats))))
+
+
 EXPORT = Stage(
     name="export",
     about="The files for solvers and viewers.",
     make=Entry("pipeline.export.make:make"),
-    needs=needing(FaceMesh, FluidDomain),
+    needs=_held,
     takes=_colors,
     gives={OpenFoamCase: "openfoam"},
     settings=ExportSettings,

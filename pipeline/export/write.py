@@ -27,7 +27,7 @@ def export(
     fields: Mapping[str, Floats] | None = None,
     slip: FiberSlip | None = None,
 ) -> tuple[str, ...]:
-    """Write the mesh in every format of `settings` into ``folder/<format>``.
+    """Write a mesh in every format of `settings` into ``folder/<format>``.
 
     A format that cannot hold the mesh does not take the others with it: they are written, and the error comes after.
 
@@ -57,15 +57,39 @@ def export(
         If a format cannot hold what it is asked to; the others are there, and nothing half written.
     """
     order = Order(settings, flow, sides, fields or {}, slip, progress)
+    return write_all(settings.formats, {FaceMesh: mesh}, folder, order)
+
+
+def write_all(formats: tuple[str, ...], things: Mapping[type, object], folder: Path, order: Order) -> tuple[str, ...]:
+    """Write formats of a run's nouns, each into ``folder/<format>``; a format that fails leaves the others.
+
+    Parameters
+    ----------
+    formats : tuple of str
+    things : mapping of type to object
+        What the formats hold: the mesh, the fibers' surface, the mat.
+    folder : Path
+    order : Order
+
+    Returns
+    -------
+    tuple of str
+        The formats written.
+
+    Raises
+    ------
+    FormatsFailedError
+        As `export`.
+    """
     failed: dict[str, str] = {}
-    for name in settings.formats:
+    for name in formats:
         try:
-            write_one(name, mesh, folder, order)
+            write_one(name, things[WRITTEN[name].of], folder, order)
         except StageError as problem:
             failed[name] = str(problem)
     if failed:
-        raise FormatsFailedError(tuple(name for name in settings.formats if name not in failed), failed)
-    return settings.formats
+        raise FormatsFailedError(tuple(name for name in formats if name not in failed), failed)
+    return formats
 
 
 class FormatsFailedError(StageError):
@@ -80,8 +104,8 @@ class FormatsFailedError(StageError):
         )
 
 
-def write_one(name: str, mesh: FaceMesh, folder: Path, order: Order) -> None:
-    """Write one format into ``folder/<name>``, whole or not at all.
+def write_one(name: str, thing: object, folder: Path, order: Order) -> None:
+    """Write one format of what it holds into ``folder/<name>``, whole or not at all.
 
     Raises
     ------
@@ -90,7 +114,7 @@ def write_one(name: str, mesh: FaceMesh, folder: Path, order: Order) -> None:
     """
     kind = WRITTEN[name]
     assert kind.write is not None
-    if kind.cells == "tetrahedra" and not mesh.tetrahedral:
+    if kind.cells == "tetrahedra" and isinstance(thing, FaceMesh) and not thing.tetrahedral:
         raise StageError(
             f"{name} holds tetrahedra only, and the mesh has other cells: take openfoam, vtk or fluent "
             "in export.formats, or a tetmesh.engine that makes tetrahedra"
@@ -99,7 +123,7 @@ def write_one(name: str, mesh: FaceMesh, folder: Path, order: Order) -> None:
     shutil.rmtree(side, ignore_errors=True)
     side.mkdir(parents=True)
     try:
-        kind.write(mesh, side, order)
+        kind.write(thing, side, order)
         shutil.rmtree(place, ignore_errors=True)
         side.rename(place)
     finally:

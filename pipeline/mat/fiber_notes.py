@@ -7,8 +7,8 @@ import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from pipeline.cad.lengths import NUMBER, in_meters, unit_of
 from pipeline.errors import CaseError
-from pipeline.mat.lengths import NUMBER, in_meters, unit_of
 
 _NOTE = re.compile(r"#\s*(?P<key>\w+)\s*[:=]\s*(?P<value>.*?)\s*")
 _PLAN = re.compile(rf"({NUMBER})\s*([^\W\d]*)\s*[x×*]\s*({NUMBER})\s*([^\W\d]+)", re.IGNORECASE)

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pipeline.analytics.models.growth import Predictor, predictor
+from pipeline.cad.fibers import write_fibers
 from pipeline.line import store
-from pipeline.mat.exchange import write_fibers
 from pipeline.mat.generate import generate
 from pipeline.mat.measures import measure
 from pipeline.mat.settings import BoxSettings, LayeredSettings

@@ -5,10 +5,10 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pipeline.cad.surfaces import write_ply, write_stl
 from pipeline.line import store
 from pipeline.nouns.fibers import Mat
 from pipeline.progress import Progress
-from pipeline.surface.files import write_surface
 from pipeline.surface.measures import measure_surface
 from pipeline.surface.union import unite
 
@@ -23,5 +23,6 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     surface = unite(mat, settings, progress)
     store.save(surface, into / "surface.npz")
     store.write_json(into / "measures.json", measure_surface(mat, surface, settings, progress))
-    write_surface(surface, into)
+    write_stl(surface, into / "surface.stl")
+    write_ply(surface, into / "surface.ply")
     return {"triangles": len(surface.triangles), "solidity": surface.solidity}

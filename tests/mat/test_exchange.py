@@ -13,11 +13,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pipeline.cad.fibers import write_fibers, write_spaceclaim
+from pipeline.cad.lengths import in_meters, unit_of
 from pipeline.errors import CaseError
 from pipeline.geometry.box import Box
-from pipeline.mat.exchange import read_fibers, write_fibers, write_spaceclaim
+from pipeline.mat.exchange import read_fibers
 from pipeline.mat.generate import generate
-from pipeline.mat.lengths import in_meters, unit_of
 from pipeline.mat.measures import measure
 from pipeline.mat.settings import ArraySettings, FileSettings, LayeredSettings
 from pipeline.mat.windows import cut_to

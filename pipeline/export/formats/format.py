@@ -5,7 +5,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.flow import Flow
@@ -33,7 +33,7 @@ class Order:
     fields : mapping of name to (cells,) array
         Shown on the cells by a format that can.
     slip : FiberSlip, optional
-        How far the air slips along the fibers; there just where ``settings.fiber_wall`` is ``"slip"``.
+        How far the air slips along the fibers; it stands still on them without.
     progress : Progress
     """
 
@@ -55,10 +55,12 @@ class Format:
         In `export.formats` and after ``--format``.
     suffixes : tuple of str
         Lower-case, with their dot; a file's suffix counts in any case.
+    of : type
+        The noun that it holds: the mesh, the fibers' surface, or the mat.
     cells : "any", "tetrahedra" or "none"
         What it can hold of a volume; none for a surface or center lines.
     patches : "by name", "by number" or "lost"
-    write : function of the mesh, a folder and an `Order`, optional
+    write : function of what it holds, a folder and an `Order`, optional
         Puts its files into the folder, which is there and empty. It raises a `StageError` where it cannot.
     read : function of a path, optional
         Gives the mesh; it raises a `StageError` where the file holds none.
@@ -70,9 +72,10 @@ class Format:
 
     name: str
     suffixes: tuple[str, ...] = ()
+    of: type = FaceMesh
     cells: Literal["any", "tetrahedra", "none"] = "any"
     patches: Literal["by name", "by number", "lost"] = "by name"
-    write: Callable[[FaceMesh, Path, Order], None] | None = None
+    write: Callable[[Any, Path, Order], None] | None = None
     read: Callable[[Path], FaceMesh] | None = None
     recognizes: Callable[[bytes], bool] = lambda head: True
     unavailable_because: str | None = None

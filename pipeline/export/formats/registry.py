@@ -2,9 +2,10 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+from collections.abc import Iterable
 from pathlib import Path
 
-from pipeline.export.formats import abaqus, fluent, gmsh, medit, nastran, su2, vtk
+from pipeline.export.formats import abaqus, csv, fluent, gmsh, medit, nastran, obj, ply, spaceclaim, stl, su2, vtk
 from pipeline.export.formats.format import Format
 from pipeline.export.formats.openfoam import format as openfoam
 from pipeline.export.formats.unavailable import UNAVAILABLE
@@ -18,6 +19,11 @@ FORMATS: tuple[Format, ...] = (
     nastran.FORMAT,
     su2.FORMAT,
     medit.FORMAT,
+    stl.FORMAT,
+    ply.FORMAT,
+    obj.FORMAT,
+    csv.FORMAT,
+    spaceclaim.FORMAT,
     *UNAVAILABLE,
 )
 WRITTEN = {each.name: each for each in FORMATS if each.write is not None}
@@ -44,3 +50,8 @@ def why_not_read(path: Path) -> str | None:
     """Say why files of a suffix are not read; None where they are, or the suffix is unknown."""
     suffix = path.suffix.lower()
     return next((each.unavailable_because for each in FORMATS if suffix in each.suffixes), None)
+
+
+def held(names: Iterable[str]) -> tuple[type, ...]:
+    """Give the nouns that formats hold, each once."""
+    return tuple(dict.fromkeys(WRITTEN[name].of for name in names))
