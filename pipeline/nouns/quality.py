@@ -18,7 +18,7 @@ class Metric:
     name, unit, source : str
         Unit ``"1"`` where it has none; `source` says whose definition and limit these are.
     where : str
-        ``"cells"``, ``"faces"`` or ``"internal faces"``.
+        ``"cells"``, ``"faces"``, ``"internal faces"`` or ``"fibers"``.
     min, mean, p99, max : float [unit]
         The mean non-orthogonality is the angle of the mean cosine, as `checkMesh` prints it.
     limit : float [unit], optional
@@ -53,7 +53,8 @@ class QualityReport:
     solver (non-orthogonality below 90 degrees, and what only ``checkMesh -allGeometry`` looks at: determinant, face
     weight, volume ratio, concave cells, tetrahedra at faces); ``"fail"`` where plain `checkMesh` fails too. `reasons`
     has a sentence for each limit that does not hold, `notes` one for what stops no solver but may not be meant: parts
-    that do not touch, patches without a face. `patches` counts faces, `volume` is in m3.
+    that do not touch, patches without a face. `patches` counts faces, `volume` is in m3. `fibers` counts the fibers
+    whose walls were held against them; 0 where nobody knows of fibers, and the verdict is of the cells alone.
     """
 
     cells: int
@@ -66,6 +67,7 @@ class QualityReport:
     verdict: str
     reasons: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    fibers: int = 0
 
     @property
     def passed(self) -> bool:

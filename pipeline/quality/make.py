@@ -9,9 +9,11 @@ import numpy as np
 
 from pipeline.line import store
 from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.nouns.quality import CellFields
 from pipeline.progress import Progress
 from pipeline.quality.judge import cell_fields, judge
+from pipeline.quality.walls import with_walls
 
 if TYPE_CHECKING:
     from pipeline.line.results import Results
@@ -20,8 +22,10 @@ if TYPE_CHECKING:
 
 def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     """Judge the mesh."""
-    mesh = results.read(FaceMesh)
+    mesh, measures = results.read(FaceMesh), results.read(TetmeshMeasures)
     report = judge(mesh, results.case.quality, progress)
+    if measures.fidelity is not None:
+        report = with_walls(report, measures.fidelity, results.case.tetmesh.deviation)
     store.write_json(into / "quality.json", report)
     fields = cell_fields(mesh)
     store.save(CellFields(tuple(fields), np.stack(list(fields.values()))), into / "fields.npz")

@@ -4,6 +4,7 @@
 
 from pipeline.line.stage import Entry, Stage, needing
 from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.nouns.quality import CellFields, QualityReport
 from pipeline.quality.settings import QualitySettings
 
@@ -11,9 +12,10 @@ QUALITY = Stage(
     name="quality",
     about="The limits a good mesh keeps to.",
     make=Entry("pipeline.quality.make:make"),
-    needs=needing(FaceMesh),
+    needs=needing(FaceMesh, TetmeshMeasures),
     gives={QualityReport: "quality.json", CellFields: "fields.npz"},
     settings=QualitySettings,
+    reads=("tetmesh",),
     units={"max_non_orthogonality": "deg"},
     tables=Entry("pipeline.quality.table:tables"),
     section=Entry("pipeline.report.page.quality_section:section"),

@@ -65,6 +65,8 @@ def summary(report: QualityReport) -> str:
         "warn": "usable, with a loss of accuracy where a limit does not hold",
         "fail": "not fit for a solver",
     }
+    if report.fibers and report.passed:
+        words["pass"] = f"every limit holds, and {report.fibers:,} fibers stand where they should"
     size = f"{report.cells:,} cells, {report.points:,} points, {report.faces:,} faces"
     return f"{size}: {words[report.verdict]}"
 

@@ -67,8 +67,9 @@ def verdict(quality: QualityReport | None) -> tuple[str, str]:
     """Give the mark and the words of the whole: that of the mesh, for only a mesh can be unfit."""
     if quality is None:
         return NOTE, "no mesh yet"
+    placed = ", every fiber is in its place" if quality.fibers else ""
     return {
-        "pass": (GOOD, "mesh is fit for a solver"),
+        "pass": (GOOD, f"mesh is fit for a solver{placed}"),
         "warn": (NOTE, "mesh is usable, with a loss of accuracy"),
         "fail": (BAD, "mesh is not fit for a solver"),
     }[quality.verdict]
