@@ -15,6 +15,7 @@ from pipeline.analytics.models.prediction import depth_of, efficiency_over
 from pipeline.analytics.models.single_fiber import PRESETS, penetration, preset
 from pipeline.analytics.settings import FilterSettings, FlowSettings
 from pipeline.capture.cells import Cells
+from pipeline.capture.concentration import concentration_penetration
 from pipeline.capture.contact import fiber_grid, touching_fibers
 from pipeline.capture.counting import Filter, counted
 from pipeline.capture.first_row import first_row
@@ -35,6 +36,9 @@ _TRANSITS = 100.0  # a particle is given up after so many times that the air tak
 _STEPS = 1_000_000
 _SLICES = 20
 _PATHS = 2000
+_MOST_CELLS = 100_000  # for the concentration, which splits each in eight
+_RESOLVED = 0.3  # of a cell: the thinnest layer of diffusion that is tried
+_TRUSTED = 0.1  # relative error of the capture depth up to which the concentration's answer is given
 _ALONE = 5  # of a mechanism alone, one particle for so many of all together
 _SIEVED = 0.02  # of the particle's diameter: two fibers within that of its surface hold it together
 
@@ -130,6 +134,7 @@ class _Size:
     fiber: Ints  # that caught each particle, -1 where none did
     sieved: int
     alone: dict[Mechanism, float]
+    diffused: float | None  # efficiency by the concentration
 
 
 def _size(
@@ -154,7 +159,31 @@ def _size(
         name = f"{at}, {mechanism} alone"
         some = _follow(filter, diameter, (mechanism,), number, fewer, medium, settings, air, tell, name, kept)
         alone[mechanism] = float((some.outcome == CAPTURED).mean())
-    return _Size(diameter, fates, fiber, sieved, alone)
+    diffused = _diffused(filter, diameter, medium, settings, air, tell, at)
+    return _Size(diameter, fates, fiber, sieved, alone, diffused)
+
+
+def _diffused(
+    filter: Filter,
+    diameter: float,
+    medium: Medium,
+    settings: CaptureSettings,
+    air: FlowSettings,
+    tell: Progress,
+    at: str,
+) -> float | None:
+    """Efficiency by the concentration, where the cells resolve the layer that diffusion leaves about a fiber."""
+    chosen = tuple(name for name in settings.mechanisms if name in ("interception", "diffusion"))
+    motion = motion_of(diameter, air.particle_density, air.flow(), preset(air.preset), chosen, "none")
+    if motion.diffusivity <= 0.0 or medium.wraps or len(medium.cells.nodes) > _MOST_CELLS:
+        return None
+    thick = 2.0 * float(medium.mat.radius.mean())
+    layer = thick * (motion.diffusivity / (air.face_velocity * thick)) ** (1.0 / 3.0)
+    if layer < _RESOLVED * float(np.median(medium.cells.size)):
+        return None
+    tell(f"{at}: concentration")
+    found = concentration_penetration(filter.cells, filter.grid, motion.contact, motion.diffusivity)
+    return 1.0 - found.value if found.error < _TRUSTED else None
 
 
 def _filter(medium: Medium, diameter: float) -> tuple[Filter, Ints]:
@@ -256,7 +285,7 @@ def _summary(sizes: list[_Size], stray: float, medium: Medium, settings: Capture
         single_fiber=tuple(efficiency_over(medium.model, air, diameter)["total"].tolist()),
         by_mechanism={name: tuple(size.alone[name] for size in sizes) for name in settings.mechanisms},
         first_row=_first_row(sizes, medium, released),
-        concentration=(None,) * len(sizes),
+        concentration=tuple(size.diffused for size in sizes),
         residence_time=tuple(_mean(size.fates.time[size.fates.outcome == PASSED]) for size in sizes),
         figure_of_merit=tuple(
             None if each is None else float(figure_of_merit(each, medium.pressure_drop)) for each in depth

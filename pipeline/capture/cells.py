@@ -212,7 +212,7 @@ def velocity_in(x: float, y: float, z: float, cell: int, cells: Cells) -> tuple[
         if least >= -1e-6 or following < 0 or not cells.curved[following]:
             break
         cell = following
-        _, b, c, d = shares(x, y, z, cell, cells)
+        a, b, c, d = shares(x, y, z, cell, cells)
     a, b, c, d = _clipped(a, b, c, d)
     u, v, w = _blended(cells.flux[cell], a, b, c, d)
     xx, xy, xz, yx, yy, yz, zx, zy, zz = _columns(cell, cells, b, c, d)
@@ -230,13 +230,13 @@ def _clipped(a: float, b: float, c: float, d: float) -> tuple[float, float, floa
 
 
 @compiled
-def inflow(places: Floats, cells: Cells) -> Floats:
-    """Give the air's velocity along z at places [m] of the mesh, (n,) array [m/s]."""
-    result = np.empty(len(places))
+def velocities(places: Floats, cells: Cells) -> Floats:
+    """Give the air's velocity at places [m] of the mesh, (n, 3) array [m/s]."""
+    result = np.empty((len(places), 3))
     for n in range(len(places)):
         x, y, z = places[n, 0], places[n, 1], places[n, 2]
         cell, _ = walked(x, y, z, near_cell(x, y, z, cells), cells)
-        result[n] = velocity_in(x, y, z, cell, cells)[2]
+        result[n, 0], result[n, 1], result[n, 2] = velocity_in(x, y, z, cell, cells)
     return result
 
 
@@ -279,11 +279,17 @@ def _columns(cell: int, cells: Cells, b: float, c: float, d: float) -> _Columns:
 
 
 @compiled
+def _held(share: float) -> float:
+    return min(max(share, -0.3), 1.3)
+
+
+@compiled
 def _nearer(
     x: float, y: float, z: float, cell: int, cells: Cells, b: float, c: float, d: float
 ) -> tuple[float, float, float]:
     """Barycentric coordinates of a place in a curved cell, by Newton's method from a guess."""
     nodes, position = cells.nodes[cell], cells.position
+    b, c, d = _held(b), _held(c), _held(d)
     for _ in range(3):
         a = 1.0 - b - c - d
         shares = (
@@ -300,4 +306,6 @@ def _nearer(
         b += (dx * (yy * zz - yz * zy) + dy * (yz * zx - yx * zz) + dz * (yx * zy - yy * zx)) / size
         c += (dx * (zy * xz - zz * xy) + dy * (zz * xx - zx * xz) + dz * (zx * xy - zy * xx)) / size
         d += (dx * (xy * yz - xz * yy) + dy * (xz * yx - xx * yz) + dz * (xx * yy - xy * yx)) / size
+        # far outside the map may fold: the cell's surroundings are enough
+        b, c, d = _held(b), _held(c), _held(d)
     return b, c, d

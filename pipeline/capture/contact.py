@@ -155,6 +155,15 @@ def surface_distance(x: float, y: float, z: float, grid: FiberGrid) -> tuple[flo
 
 
 @compiled
+def distances(places: Floats, grid: FiberGrid) -> Floats:
+    """Give the distance to the nearest fiber's surface at each place, (n,) array [m], as `surface_distance` does."""
+    result = np.empty(len(places))
+    for row in range(len(places)):
+        result[row], _ = surface_distance(places[row, 0], places[row, 1], places[row, 2], grid)
+    return result
+
+
+@compiled
 def touching_fibers(places: Floats, grid: FiberGrid, fiber: Ints, distance: float) -> Ints:
     """Count the fibers whose surface is within a distance of each place, up to 2.
 

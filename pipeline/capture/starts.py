@@ -4,7 +4,7 @@
 
 import numpy as np
 
-from pipeline.capture.cells import Cells, inflow
+from pipeline.capture.cells import Cells, velocities
 from pipeline.capture.random_numbers import uniforms
 from pipeline.capture.trajectories import Duct
 from pipeline.errors import StageError
@@ -58,7 +58,7 @@ def starts(first: int, count: int, seed: int, duct: Duct, cells: Cells, fastest:
         place = share[missing] if turn == 0 else drawn[:, :2]
         places[missing, 0] = duct.x0 + place[:, 0] * (duct.x1 - duct.x0)
         places[missing, 1] = duct.y0 + place[:, 1] * (duct.y1 - duct.y0)
-        missing = missing[drawn[:, 2] * fastest > inflow(places[missing], cells)]
+        missing = missing[drawn[:, 2] * fastest > velocities(places[missing], cells)[:, 2]]
         if not len(missing):
             return places
     raise StageError(f"{len(missing)} of {count} particles found no inflow to start in; is the inlet closed?")
