@@ -7,7 +7,7 @@ READY  := $(VENV)/.ready
 COUNT  ?= 200
 
 .DEFAULT_GOAL := help
-.PHONY: help setup case test test-slow fuzz check bench verify docs constraints clean
+.PHONY: help setup case test test-slow fuzz coverage check bench verify docs constraints clean
 
 help:  ## Say what there is
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-10s %s\n", $$1, $$2}'
@@ -37,6 +37,9 @@ test-slow: setup  ## Run the tests that take minutes
 fuzz: setup  ## Draw COUNT inputs for each reader of strangers' files, and kill COUNT runs at random (hours at 2000)
 	$(BIN)/python -m tests.security.fuzz $(COUNT)
 	$(BIN)/python -m tests.processes.kills $(COUNT)
+
+coverage: setup  ## Which lines the tests run, with the compiled loops run by Python (an hour)
+	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -n auto --dist loadfile --timeout 3600 --cov pipeline --cov-report term-missing:skip-covered
 
 check: setup  ## Style, types, imports, and the examples in the documentation
 	$(BIN)/ruff format --check .
