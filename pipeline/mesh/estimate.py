@@ -16,7 +16,7 @@ _STEPS = 200  # of the sum over distances from a fiber's axis
 
 
 def estimate(case: Any) -> "Estimate | None":
-    """Give what meshing a case will take by its fibers' length; None where only growing the mat tells that.
+    """Give what meshing a case will take by its fibers' length; None where that is not known before.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def estimate(case: Any) -> "Estimate | None":
     else:
         return None
     settings: TetmeshSettings = case.tetmesh
-    return settings.mesher.estimate(slender, settings)
+    return settings.mesher.estimate(slender, settings) if settings.mesher.estimate is not None else None
 
 
 def slenderness(domain: "FluidDomain") -> float:

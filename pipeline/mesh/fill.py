@@ -41,8 +41,8 @@ def fill(
         the settings allow, however often it is run.
     """
     engine = settings.mesher
-    expected = engine.estimate(slenderness(domain), settings)
-    if expected.seconds > _LONG:
+    expected = engine.estimate(slenderness(domain), settings) if engine.estimate is not None else None
+    if expected is not None and expected.seconds > _LONG:
         tell(
             f"{NOTE}{engine.name} will take about {expected.seconds / 60:.0f} minutes for some {expected.cells:,.2g} "
             f"cells; {engine.quicker}"

@@ -47,7 +47,7 @@ class Engine:
         Gives what to set for better cells than these settings made, as ``table.key=value``.
     missing : callable
         Says why it cannot run on this machine and what to do, or None where it can.
-    estimate : callable
+    estimate : callable, optional
         Gives cells, memory and processor time for fibers of a slenderness (the sum of length over diameter) and the
         settings, within some ten percents.
     quicker : str
@@ -62,7 +62,7 @@ class Engine:
     mesh: Callable[["FluidDomain", "TetmeshSettings", "Progress", Path | None], "tuple[FaceMesh, TetmeshMeasures]"]
     truer: str
     better: Callable[["TetmeshSettings"], tuple[str, ...]]
-    estimate: Callable[[float, "TetmeshSettings"], "Estimate"]
-    quicker: str
     missing: Callable[["TetmeshSettings"], str | None] = lambda settings: None
+    estimate: Callable[[float, "TetmeshSettings"], "Estimate"] | None = None
+    quicker: str = "raise tetmesh.edge"
     tries: int = 1

@@ -43,6 +43,5 @@ LATTICE = Engine(
     mesh=_mesh,
     truer="lower tetmesh.edge",
     estimate=_estimate,
-    quicker="raise tetmesh.edge",
     better=lambda settings: (f"tetmesh.edge={0.75 * settings.edge:.3g}",),
 )
