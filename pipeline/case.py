@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 
 from pipeline.errors import CaseError
 from pipeline.line.stages import LINE, SHARED
-from pipeline.mat.settings import STOPS, FileSettings
+from pipeline.mat.settings import STOPS, FileSettings, SurfaceFileSettings
 from pipeline.reading import read_bytes
 from pipeline.units import FROM_FILE
 
@@ -98,7 +98,7 @@ def read_case(path: Path, overrides: tuple[str, ...] = ()) -> Case:
         If the file cannot be read, is no TOML, or asks for nonsense; the message has one line per mistake.
     """
     case = validate(override(read_toml(path), overrides), str(path))
-    if isinstance(case.mat, FileSettings):
+    if isinstance(case.mat, FileSettings | SurfaceFileSettings):
         # a path in a case file starts from the case file, wherever the command is run
         case = case.model_copy(update={"mat": case.mat.model_copy(update={"file": path.parent / case.mat.file})})
     return case

@@ -5,7 +5,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pipeline.analytics.models.comparison import compare
+from pipeline.analytics.models.comparison import compare, compare_body
 from pipeline.geometry.tets import volume_between
 from pipeline.line import store
 from pipeline.nouns.fibers import Mat
@@ -20,9 +20,14 @@ if TYPE_CHECKING:
 
 def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     """Ask every model."""
-    mat = results.read(Mat)
-    air = volume_between(*results.read(FaceMesh).boundary(), mat.slab.lower[2], mat.slab.upper[2])
-    solidity = 1.0 - air / mat.slab.volume
-    comparison = compare(mat, results.read(Surface).solidity, solidity, results.case.flow.flow())
+    surface, flow = results.read(Surface), results.case.flow.flow()
+    slab = surface.slab
+    air = volume_between(*results.read(FaceMesh).boundary(), slab.lower[2], slab.upper[2])
+    solidity = 1.0 - air / slab.volume
+    if results.case.mat.generator == "surface":
+        diameter = 2.0 * float(surface.radius[0])
+        comparison = compare_body(slab.size[2], diameter, surface.solidity, solidity, flow)
+    else:
+        comparison = compare(results.read(Mat), surface.solidity, solidity, flow)
     store.write_json(into / "comparison.json", comparison)
     return {"mesh_solidity": comparison.solidity["mesh"]}

@@ -4,15 +4,16 @@
 
 import numpy as np
 
+from pipeline.errors import CaseError
 from pipeline.mat.array import array
-from pipeline.mat.settings import ArraySettings, BoxSettings, FileSettings, LayeredSettings
+from pipeline.mat.settings import ArraySettings, BoxSettings, FileSettings, LayeredSettings, SurfaceFileSettings
 from pipeline.mat.sums import Predict
 from pipeline.nouns.fibers import Mat
 from pipeline.progress import Progress, silent
 
 
 def generate(
-    settings: LayeredSettings | BoxSettings | ArraySettings | FileSettings,
+    settings: LayeredSettings | BoxSettings | ArraySettings | FileSettings | SurfaceFileSettings,
     predict: Predict | None = None,
     progress: Progress = silent,
 ) -> Mat:
@@ -45,6 +46,8 @@ def generate(
     >>> generate(deposit).fibers
     10
     """
+    if isinstance(settings, SurfaceFileSettings):
+        raise CaseError(f'generator = "surface": {settings.file} has no center lines; this command needs fibers')
     match settings:
         case ArraySettings():
             return array(settings)

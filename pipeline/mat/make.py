@@ -10,9 +10,11 @@ from pipeline.cad.fibers import write_fibers
 from pipeline.line import store
 from pipeline.mat.generate import generate
 from pipeline.mat.measures import measure
-from pipeline.mat.settings import BoxSettings, LayeredSettings
+from pipeline.mat.settings import BoxSettings, LayeredSettings, SurfaceFileSettings
 from pipeline.mat.sums import report_stop
+from pipeline.nouns.surface_file import SurfaceFile
 from pipeline.progress import Progress
+from pipeline.units import parse
 
 if TYPE_CHECKING:
     from pipeline.line.results import Results
@@ -22,6 +24,12 @@ if TYPE_CHECKING:
 def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     """Draw the fibers."""
     settings, predict = results.case.mat, mat_predictor(results.case)
+    if isinstance(settings, SurfaceFileSettings):
+        named = SurfaceFile(
+            str(settings.file), store.file_digest(settings.file), parse(f"1 {settings.unit}", "m"), settings.side
+        )
+        store.write_json(into / "surface_file.json", named)
+        return {"file": settings.file.name}
     mat = generate(settings, predict, progress)
     measures = measure(mat)
     store.save(mat, into / "mat.npz")

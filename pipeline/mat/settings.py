@@ -470,11 +470,29 @@ class FileSettings(_Settings):
     )
 
 
+class SurfaceFileSettings(_Settings):
+    """A medium by its surface: triangles of a tomogram or of a CAD program (case file: ``generator = "surface"``)."""
+
+    generator: Literal["surface"] = Field(default="surface", description="A closed surface read from a file.")
+    file: Path = Field(description="The surface of the solid: STL, PLY, OBJ or VTP.")
+    unit: Literal["nm", "um", "mm", "cm", "m"] = Field(
+        description="Unit of the file's coordinates, which none of these formats tells."
+    )
+    side: Length | None = Field(
+        default=None,
+        description="Edge of the square plan, cut out of the middle; unless given, the smallest rectangle around it.",
+    )
+
+
 _GENERATORS: dict[str, type[BaseModel]] = {
     "layered": LayeredSettings,
     "box": BoxSettings,
     "array": ArraySettings,
     "file": FileSettings,
+    "surface": SurfaceFileSettings,
 }
-MatSettings = Annotated[LayeredSettings | BoxSettings | ArraySettings | FileSettings, by_key("generator", _GENERATORS)]
+MatSettings = Annotated[
+    LayeredSettings | BoxSettings | ArraySettings | FileSettings | SurfaceFileSettings,
+    by_key("generator", _GENERATORS),
+]
 """The settings of whichever generator makes the mat (case file: ``[mat]``)."""

@@ -7,20 +7,21 @@ from pathlib import Path
 from typing import Any
 
 from pipeline.line.stage import Entry, Stage
-from pipeline.mat.settings import FileSettings, MatSettings
+from pipeline.mat.settings import FileSettings, MatSettings, SurfaceFileSettings
 from pipeline.nouns.fibers import Mat
 from pipeline.nouns.mat_measures import MatMeasures
+from pipeline.nouns.surface_file import SurfaceFile
 
 
 def _file(case: Any) -> Iterable[Path]:
-    return (case.mat.file,) if isinstance(case.mat, FileSettings) else ()
+    return (case.mat.file,) if isinstance(case.mat, FileSettings | SurfaceFileSettings) else ()
 
 
 MAT = Stage(
     name="mat",
     about="The fiber mat: how it is drawn and when it is complete.",
     make=Entry("pipeline.mat.make:make"),
-    gives={Mat: "mat.npz", MatMeasures: "measures.json"},
+    gives={Mat: "mat.npz", MatMeasures: "measures.json", SurfaceFile: "surface_file.json"},
     settings=MatSettings,
     required=True,
     reads=("flow",),

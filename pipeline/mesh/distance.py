@@ -8,6 +8,7 @@ import numpy as np
 
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.domain import FluidDomain
+from pipeline.nouns.fibers import Pieces
 
 if TYPE_CHECKING:
     from pipeline.geometry.fibers import FiberDistance
@@ -30,6 +31,12 @@ def fiber_distance(domain: FluidDomain, reach: Floats) -> "FiberDistance":
     from pipeline.geometry.fibers import FiberDistance
 
     pieces = domain.pieces
+    if len(pieces) == 0:
+        # nobody knows the axes of a surface's fibers: one that lies out of reach of the duct stands for them
+        away = np.array(domain.box.upper)[None] + 1e3 * domain.mean_diameter * np.array([[1.0, 0, 0], [2.0, 0, 0]])
+        none = np.zeros(1, np.int64)
+        pieces = Pieces(away[:1], away[1:], none, np.zeros((1, 2), np.bool_))
+        reach = 1e-3 * domain.radius
     return FiberDistance.about(
         pieces.start,
         pieces.end,

@@ -31,4 +31,9 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
 
 def obstacle(results: "Results") -> str | None:
     """Say why the engine cannot run on this machine; None where it can."""
+    if results.case.mat.generator == "surface" and results.case.tetmesh.mesher.cuts_by_axes:
+        return (
+            f"tetmesh.engine = {results.case.tetmesh.engine} cuts fibers by their axes, and a surface has none; "
+            'set it to "tetwild" or "snappy"'
+        )
     return engine_missing(results.case.tetmesh)

@@ -41,6 +41,8 @@ def fidelity(mesh: FaceMesh, domain: FluidDomain) -> Fidelity:
     corners = points[triangles]
     middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
     area = np.repeat(np.linalg.norm(area_vectors(points, triangles), axis=1) / 3.0, 3)
+    if len(domain.pieces) == 0:
+        return _beside_surface(middles.reshape(-1, 3), area, domain)
     distance = fiber_distance(domain, _REACH * diameter)
     off, piece = distance.with_piece(middles.reshape(-1, 3))
     known = piece >= 0
@@ -108,3 +110,21 @@ def _axis_in_air(points: Floats, walls: Ints, domain: FluidDomain) -> Floats:
     count = np.bincount(fiber, minlength=len(domain.radius))
     found: Floats = np.bincount(fiber, in_air, len(domain.radius)) / np.maximum(count, 1)
     return found
+
+
+def _beside_surface(places: Floats, area: Floats, domain: FluidDomain) -> Fidelity:
+    """Measure walls against the surface itself, where nobody knows the fibers' axes."""
+    import pyvista as pv
+
+    diameter = domain.mean_diameter
+    # VTK's tolerances are absolute: work at size one
+    walls = pv.PolyData.from_regular_faces(domain.points / diameter, domain.triangles[domain.fiber >= 0])
+    implicit = pv.PolyData(places / diameter).compute_implicit_distance(walls)["implicit_distance"]
+    # the air's surface points out of the air, into the fibers: what lies outside of a fiber has a negative distance
+    off = -np.asarray(implicit, np.float64)
+    return Fidelity(
+        mean_deviation=float(np.abs(off) @ area / area.sum()),
+        typical_deviation=_within(np.abs(off), area, 0.99),
+        largest_deviation=float(np.abs(off).max()),
+        fibers=(_walls(0, diameter, off, area, 0.0),),
+    )

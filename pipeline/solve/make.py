@@ -16,9 +16,9 @@ from pipeline.line.places import kept_folder
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.exports import OpenFoamCase
-from pipeline.nouns.fibers import Mat
 from pipeline.nouns.flow import Solution
 from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.surface import Surface
 from pipeline.openfoam.environment import SOLVER, openfoam_missing
 from pipeline.progress import Progress
 from pipeline.solve.bed import Bed
@@ -31,14 +31,14 @@ if TYPE_CHECKING:
 
 def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     """Solve the flow."""
-    mat, flow, comparison = results.read(Mat), results.case.flow.flow(), results.read(Comparison)
+    surface, flow, comparison = results.read(Surface), results.case.flow.flow(), results.read(Comparison)
     model = pressure_model(results.case.flow.pressure_model)
     kn = knudsen(flow.mean_free_path, comparison.fiber_diameter)
     bed = Bed(
-        face_area=mat.slab.face_area,
-        thickness=mat.thickness,
+        face_area=surface.slab.face_area,
+        thickness=surface.slab.size[2],
         pressure_factor=float(model.coefficient(comparison.solidity["mesh"], slip_length(kn))),
-        fiber_length=_parallel_length(results, mat, comparison),
+        fiber_length=_parallel_length(results, surface, comparison),
     )
     engine = _by_openfoam if results.case.solve.engine == "openfoam" else _by_elements
     solution = engine(results, into, bed, progress)
@@ -100,16 +100,18 @@ def _linked(source: str, target: str) -> None:
         shutil.copy2(source, target)
 
 
-def _parallel_length(results: "Results", mat: Mat, comparison: Comparison) -> float | None:
+def _parallel_length(results: "Results", surface: Surface, comparison: Comparison) -> float | None:
     # fibers on a symmetry plane count by half, as they do in the solidity
     if results.case.mat.generator != "array":
         return None
-    return comparison.solidity["nominal"] * mat.slab.volume / (math.pi * float(mat.radius[0]) ** 2)
+    return comparison.solidity["nominal"] * surface.slab.volume / (math.pi * float(surface.radius[0]) ** 2)
 
 
 def obstacle(results: "Results") -> str | None:
     """Say what keeps the solver from running; None where nothing does."""
     if results.case.solve.engine != "openfoam":
+        if results.case.mat.generator == "surface":
+            return "solve.engine = stokes needs the fibers' axes, and a surface has none; set it to openfoam"
         return None
     if "openfoam" not in results.case.export.formats:
         return "export.formats lacks openfoam, the format of solve.engine = openfoam"

@@ -8,17 +8,17 @@ from pipeline.line.stage import Entry, Stage
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.exports import OpenFoamCase
-from pipeline.nouns.fibers import Mat
 from pipeline.nouns.flow import Solution
 from pipeline.nouns.flow_field import FlowField
 from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.surface import Surface
 from pipeline.solve.settings import SolveSettings
 
 
 def _needs(case: Any) -> tuple[type, ...]:
     if case.solve.engine == "openfoam":
-        return Mat, OpenFoamCase, Comparison
-    return Mat, FluidDomain, FaceMesh, Comparison
+        return Surface, OpenFoamCase, Comparison
+    return Surface, FluidDomain, FaceMesh, Comparison
 
 
 SOLVE = Stage(

@@ -12,7 +12,7 @@ from pipeline.errors import CaseError
 from pipeline.line import store
 from pipeline.line.manifest import finished
 from pipeline.line.run import program_of, wanted
-from pipeline.mat.settings import ArraySettings, FileSettings
+from pipeline.mat.settings import ArraySettings, FileSettings, SurfaceFileSettings
 from pipeline.study.settings import Study
 
 
@@ -89,7 +89,7 @@ def plan(study: Study, folder: Path) -> list[Task]:
 def _runs(study: Study, number: int, point: dict[str, Any], folder: Path) -> list[Task]:
     settings = study.settings(point)
     case = read_case(study.case, settings)
-    seeded = not isinstance(case.mat, ArraySettings | FileSettings)
+    seeded = not isinstance(case.mat, ArraySettings | FileSettings | SurfaceFileSettings)
     if not seeded and study.seeds > 1:
         raise CaseError(f'seeds = {study.seeds}: a mat of generator = "{case.mat.generator}" is always the same; set 1')
     tasks = []

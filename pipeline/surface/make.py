@@ -1,4 +1,4 @@
-"""Unite the fibers of a mat, measure their surface, and keep both."""
+"""Unite the fibers of a mat, or read a surface, measure it, and keep both."""
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from pipeline.cad.surfaces import write_ply, write_stl
 from pipeline.line import store
 from pipeline.nouns.fibers import Mat
+from pipeline.nouns.surface_file import SurfaceFile
 from pipeline.progress import Progress
 from pipeline.surface.measures import measure_surface
 from pipeline.surface.union import unite
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
 def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     """Unite the fibers."""
+    if results.case.mat.generator == "surface":
+        return _own(results, into, progress)
     mat, settings = results.read(Mat), results.case.surface
     surface = unite(mat, settings, progress)
     store.save(surface, into / "surface.npz")
@@ -26,3 +29,13 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     write_stl(surface, into / "surface.stl")
     write_ply(surface, into / "surface.ply")
     return {"triangles": len(surface.triangles), "solidity": surface.solidity}
+
+
+def _own(results: "Results", into: Path, progress: Progress) -> "Counts":
+    from pipeline.surface.own import read_body
+
+    surface, found = read_body(results.read(SurfaceFile), progress)
+    store.save(surface, into / "surface.npz")
+    store.write_json(into / "measures.json", found)
+    write_surface(surface, into)
+    return {"triangles": len(surface.triangles), "solidity": surface.solidity, "mended": found.mended}

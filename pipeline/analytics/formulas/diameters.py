@@ -55,8 +55,11 @@ def mat_diameters(mat: Mat, flow: Flow, solidity: float) -> dict[str, float]:
         ``count``, ``volume`` and ``surface`` of `mean_diameters`, and ``effective``: what Eq. A33 makes of the
         drag of all fibers added up, each in Kuwabara's cell with the slip of its own diameter.
     """
-    diameter = 2.0 * mat.radius[mat.segment_fibers()]
-    length = mat.inside_lengths()
+    return fiber_diameters(2.0 * mat.radius[mat.segment_fibers()], mat.inside_lengths(), flow, solidity)
+
+
+def fiber_diameters(diameter: Floats, length: Floats, flow: Flow, solidity: float) -> dict[str, float]:
+    """Do as `mat_diameters`, for fibers by their diameters and lengths, (n,) arrays [m]."""
     means = mean_diameters(diameter, length)
     slip_length = slip.slip_length(slip.knudsen(flow.mean_free_path, diameter))
     # F* of each fiber over that of one without slip; the drag adds up over the length

@@ -4,9 +4,11 @@
 
 import math
 
+import numpy as np
+
 from pipeline.analytics.formulas import slip
 from pipeline.analytics.formulas.cell import reynolds
-from pipeline.analytics.formulas.diameters import mat_diameters
+from pipeline.analytics.formulas.diameters import fiber_diameters, mat_diameters
 from pipeline.analytics.formulas.pressure_drop import pressure_drop
 from pipeline.analytics.models.pressure_models import MODELS, PressureModel
 from pipeline.nouns.comparison import Comparison, ModelRow
@@ -43,8 +45,34 @@ def compare(mat: Mat, surface_solidity: float, mesh_solidity: float, flow: Flow)
         are within their solidity range.
     """
     solidity = {"nominal": nominal_solidity(mat), "surface": surface_solidity, "mesh": mesh_solidity}
-    diameters = mat_diameters(mat, flow, mesh_solidity)
-    diameter = diameters["volume"]
+    return _compared(solidity, mat_diameters(mat, flow, mesh_solidity), mat.thickness, flow)
+
+
+def compare_body(
+    thickness: float, diameter: float, surface_solidity: float, mesh_solidity: float, flow: Flow
+) -> Comparison:
+    """Predict the pressure drop of a medium whose fibers' axes nobody knows.
+
+    Parameters
+    ----------
+    thickness : float [m]
+    diameter : float [m]
+        Four times the volume over the surface.
+    surface_solidity, mesh_solidity : float [-]
+    flow : Flow
+
+    Returns
+    -------
+    Comparison
+        Its nominal solidity is the surface's: nothing overlaps that was ever apart.
+    """
+    solidity = {"nominal": surface_solidity, "surface": surface_solidity, "mesh": mesh_solidity}
+    one = fiber_diameters(np.array([diameter]), np.array([1.0]), flow, mesh_solidity)
+    return _compared(solidity, one, thickness, flow)
+
+
+def _compared(solidity: dict[str, float], diameters: dict[str, float], thickness: float, flow: Flow) -> Comparison:
+    mesh_solidity, diameter = solidity["mesh"], diameters["volume"]
     kn = float(slip.knudsen(flow.mean_free_path, diameter))
     re = float(reynolds(flow.density, diameter, flow.face_velocity, flow.viscosity))
 
@@ -55,7 +83,7 @@ def compare(mat: Mat, surface_solidity: float, mesh_solidity: float, flow: Flow)
                     model.coefficient(share, slip.slip_length(kn)),
                     flow.viscosity,
                     flow.face_velocity,
-                    mat.thickness,
+                    thickness,
                     diameter,
                 )
             )
@@ -75,7 +103,7 @@ def compare(mat: Mat, surface_solidity: float, mesh_solidity: float, flow: Flow)
     rows = {name: row for name, row in every.items() if min(_drops(row)) > 0.0 and max(_drops(row)) < math.inf}
     return Comparison(
         solidity=solidity,
-        thickness=mat.thickness,
+        thickness=thickness,
         fiber_diameter=diameter,
         face_velocity=flow.face_velocity,
         models=rows,

@@ -52,6 +52,8 @@ class Engine:
         settings, within some ten percents.
     quicker : str
         What makes it quicker, as the end of a message.
+    cuts_by_axes : bool
+        Whether it needs the fibers' axes: a medium that is there as a surface has none.
     tries : int
         How often it is run until the mesh is sound: an engine that differs each time may do better.
     """
@@ -66,3 +68,4 @@ class Engine:
     estimate: Callable[[float, "TetmeshSettings"], "Estimate"] | None = None
     quicker: str = "raise tetmesh.edge"
     tries: int = 1
+    cuts_by_axes: bool = False

@@ -41,6 +41,7 @@ LATTICE = Engine(
     meaning="a body-centered cubic lattice cut by the fibers: quick at any size, the same every time",
     settings=LatticeSettings,
     mesh=_mesh,
+    cuts_by_axes=True,
     truer="lower tetmesh.edge",
     estimate=_estimate,
     better=lambda settings: (f"tetmesh.edge={0.75 * settings.edge:.3g}",),
