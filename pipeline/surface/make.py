@@ -37,5 +37,6 @@ def _own(results: "Results", into: Path, progress: Progress) -> "Counts":
     surface, found = read_body(results.read(SurfaceFile), progress)
     store.save(surface, into / "surface.npz")
     store.write_json(into / "measures.json", found)
-    write_surface(surface, into)
+    write_stl(surface, into / "surface.stl")
+    write_ply(surface, into / "surface.ply")
     return {"triangles": len(surface.triangles), "solidity": surface.solidity, "mended": found.mended}

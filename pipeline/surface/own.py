@@ -2,6 +2,7 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -128,9 +129,13 @@ def _read(path: Path) -> tuple[Floats, Ints]:
 
     pv.vtk_verbosity("off")
     try:
-        mesh = pv.read(path)
-    except (OSError, ValueError, RuntimeError) as problem:
-        raise CaseError(f"{path} is damaged, or no {path.suffix[1:].upper()} file: {problem}") from problem
+        with warnings.catch_warnings():
+            # a reader that fails only warns
+            warnings.simplefilter("error", UserWarning)
+            mesh = pv.read(path)
+    except (OSError, ValueError, RuntimeError, UserWarning) as problem:
+        reason = str(problem).partition("\n")[0]
+        raise CaseError(f"{path} is damaged, or no {path.suffix[1:].upper()} file: {reason}") from problem
     if not isinstance(mesh, pv.PolyData) or mesh.n_cells == 0:
         raise CaseError(f"{path} holds no triangle: it is damaged, or not the surface of a solid")
     mesh = mesh.triangulate()
