@@ -21,9 +21,10 @@ def make_room() -> None:
     if os.access(home, os.W_OK):
         return
     import atexit
-    import shutil
-    import tempfile
+    import contextlib
 
-    folder = tempfile.mkdtemp(prefix="fibertwin-numba-")
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    os.environ[_CACHE] = folder
+    from pipeline.scratch import scratch_folder
+
+    kept = contextlib.ExitStack()
+    os.environ[_CACHE] = str(kept.enter_context(scratch_folder("numba")))
+    atexit.register(kept.close)

@@ -57,6 +57,17 @@ VARIANTS = {
     "snappyHexMesh on two cores": Variant(
         "quality", ("tetmesh.engine=snappy", "tetmesh.snappy.cores=2"), _AFTER, "snappyHexMesh"
     ),
+    # a solution tells its seconds; tests/solve compares the rest digit by digit
+    "the flow, by elements": Variant("solve", ("tetmesh.engine=lattice",), ("solve", "report")),
+    "the flow, by OpenFOAM": Variant(
+        "solve", ("tetmesh.engine=lattice", "solve.engine=openfoam"), ("solve", "report"), "simpleFoam"
+    ),
+    "the flow, by OpenFOAM on two cores": Variant(
+        "solve",
+        ("tetmesh.engine=lattice", "solve.engine=openfoam", "solve.openfoam.cores=2"),
+        ("solve", "report"),
+        "simpleFoam",
+    ),
 }
 
 

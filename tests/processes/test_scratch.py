@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from pipeline import scratch
+from pipeline.machine_code import make_room
 from pipeline.scratch import scratch_folder, sweep
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="nothing is swept there")
@@ -89,3 +90,20 @@ def test_only_our_own_folders_are_swept_and_no_link_is_followed(place: Path, tmp
 def test_each_purpose_is_one_that_is_swept(place: Path) -> None:
     with pytest.raises(ValueError, match="would not be swept"), scratch_folder("unheard-of"):
         pass
+
+
+def test_what_numba_compiled_for_one_process_stays_as_long_as_it_lives(
+    place: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    # root may write everywhere
+    monkeypatch.setattr(os, "access", lambda path, mode: False)
+    make_room()
+    folder = Path(os.environ["NUMBA_CACHE_DIR"])
+    monkeypatch.setattr(scratch, "_MAKING", -1.0)
+    subprocess.run(
+        [sys.executable, "-c", "from pipeline import scratch; scratch._MAKING = -1.0; scratch.sweep()"],
+        env={**os.environ, "TMPDIR": str(place), "NUMBA_CACHE_DIR": "elsewhere"}, check=True,
+    )  # fmt: skip
+    assert folder.is_dir()
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "chosen")
