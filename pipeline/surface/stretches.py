@@ -10,6 +10,8 @@ from pipeline.geometry.crossings import crossing_pairs
 from pipeline.geometry.segments import near_pairs
 from pipeline.geometry.triangles import Floats, Ints
 
+_STRAIGHT = math.cos(math.radians(30.0))
+
 
 def stretches(points: Floats, triangles: Ints, band: Ints, piece: Ints, nodes: Floats, reach: float) -> list[int]:
     """Choose the rings at which a tube is cut so that no stretch of it cuts or covers itself.
@@ -37,7 +39,17 @@ def stretches(points: Floats, triangles: Ints, band: Ints, piece: Ints, nodes: F
     -------
     list of int
         Rings, ascending, none of them the first or the last; empty for nearly every tube.
+
+    Notes
+    -----
+    A line whose pieces all lie within 30 degrees of one direction is not looked at: there a way along the axis is no
+    longer than 1.16 times the distance it leads, so that two parts nearer than two radii are never half a turn apart.
     """
+    steps = np.diff(nodes, axis=0)
+    along = steps @ (nodes[-1] - nodes[0])
+    length = np.linalg.norm(steps, axis=1) * np.linalg.norm(nodes[-1] - nodes[0])
+    if (along > _STRAIGHT * length).all():
+        return []
     conflicts = np.sort(band[crossing_pairs(points, triangles)], axis=1)
     conflicts = np.concatenate([conflicts[conflicts[:, 0] < conflicts[:, 1]], _covering(piece, nodes, reach)])
     cuts: list[int] = []

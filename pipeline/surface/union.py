@@ -14,6 +14,7 @@ from pipeline.nouns.surface import Surface
 from pipeline.progress import Progress, silent
 from pipeline.surface.joints import polygon_radius
 from pipeline.surface.settings import SurfaceSettings
+from pipeline.surface.size import SECONDS_PER_TRIANGLE, refuse_too_large
 from pipeline.surface.tubes import Ends, tubes
 
 
@@ -36,10 +37,15 @@ def unite(mat: Mat, settings: SurfaceSettings, progress: Progress = silent) -> S
     Raises
     ------
     StageError
-        If no fiber lies within the plan, the union fails, or the surface still cuts itself somewhere.
+        If no fiber lies within the plan, the surface would not fit into memory, the union fails, or the surface still
+        cuts itself somewhere.
     """
+    expected = refuse_too_large(mat, settings)
     bodies, fiber, _ = fiber_bodies(mat, settings, progress)
-    progress(f"uniting {len(bodies)} tubes of {mat.fibers} fibers")
+    progress(
+        f"uniting {len(bodies)} tubes of {mat.fibers} fibers: about {expected:,.0f} triangles, the stage takes about "
+        f"{max(1.0, SECONDS_PER_TRIANGLE * expected):.0f} s"
+    )
     points, triangles, body = unite_within(bodies, clipping_box(mat, bodies))
     if len(triangles) == 0:
         raise StageError(f"none of the {mat.fibers} fibers lies within the plan {mat.slab}; check their coordinates")
@@ -53,6 +59,7 @@ def unite(mat: Mat, settings: SurfaceSettings, progress: Progress = silent) -> S
         points, triangles, fiber = tidied(
             points, triangles, fiber, mat.radius, _sides(points, mat.slab), settings.smallest_edge
         )
+    progress(f"looking for cuts in {len(triangles)} triangles")
     _refuse_cuts(points, triangles, fiber)
     return Surface(points, triangles, fiber, mat.radius, mat.slab, fiber_pieces(mat, settings))
 

@@ -7,10 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from pipeline.geometry.triangles import area_vectors, connected_pieces
+from pipeline.errors import StageError
+from pipeline.geometry.box import Box
+from pipeline.geometry.solids import Body
+from pipeline.geometry.triangles import Floats, Ints, area_vectors, connected_pieces
 from pipeline.nouns.fibers import Mat
 from pipeline.surface.settings import SurfaceSettings
-from pipeline.surface.union import spread, unite
+from pipeline.surface.size import expected_triangles
+from pipeline.surface.union import fiber_bodies, spread, unite
 
 from .mats import (
     BENT,
@@ -141,3 +145,29 @@ def test_labels_spread_over_a_closed_surface() -> None:
 def test_clearing_that_would_eat_the_tubes_is_refused() -> None:
     with pytest.raises(ValueError, match=r"smallest_edge = 0\.05 would collapse the tubes.*make it 0\.012 or less"):
         SurfaceSettings(sides=128)
+
+
+def test_a_surface_that_fits_in_no_memory_is_refused_with_the_fiber_that_takes_it() -> None:
+    lines = [np.array(line) * 1e-6 for line in ([(0, 3, 5), (10, 3, 5)], [(0, 7, 5), (10, 7, 5)])]
+    mat = Mat(np.concatenate(lines), np.array([0, 2, 4]), np.array([RADIUS, 1e-13]), CROSSING.slab, -1, "test")
+    with pytest.raises(StageError, match=r"fiber 1 alone, 2e-07 um thick, takes 100%.*raise surface\.ring_spacing"):
+        unite(mat, SurfaceSettings())
+
+
+@pytest.mark.parametrize("mat", [CROSSING, BENT, RESTING])
+def test_the_size_that_is_told_is_that_of_the_tubes(mat: Mat) -> None:
+    # less the two caps of each fiber, a disc of ten triangles, and what running out through the sides adds
+    tubes = sum(len(triangles) for _, triangles in fiber_bodies(mat, SurfaceSettings())[0])
+    assert expected_triangles(mat, SurfaceSettings()).sum() == pytest.approx(tubes, rel=0.2)
+
+
+def test_a_surface_that_cuts_itself_does_not_leave(monkeypatch: pytest.MonkeyPatch) -> None:
+    # two tubes put together as if their union had failed
+    def together(bodies: list[Body], limits: Box) -> tuple[Floats, Ints, Ints]:
+        (one, faces), (two, others) = bodies
+        count = np.repeat([0, 1], [len(faces), len(others)])
+        return np.concatenate([one, two]), np.concatenate([faces, others + len(one)]), count
+
+    monkeypatch.setattr("pipeline.surface.union.unite_within", together)
+    with pytest.raises(StageError, match=r"triangles of the united surface cut another.*of fibers 0, 1"):
+        unite(CROSSING, SurfaceSettings(smallest_edge=0))
