@@ -15,7 +15,7 @@ from pipeline.nouns.fibers import Mat
 from pipeline.nouns.flow import Solution
 from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.progress import Progress, silent
-from validation.convergence import Convergence, convergence
+from pipeline.study.convergence import Convergence, convergence
 from validation.exact import hexagonal_drag, square_drag
 from validation.rows import drags_of_fibers, row_drags
 

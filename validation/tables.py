@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from pipeline.errors import StageError
-from validation.convergence import Convergence
+from pipeline.study.convergence import Convergence
 from validation.ladder import FACTORS, Rung, judged
 from validation.mats import MatRun, mean_and_half_width, over_finest, spread
 

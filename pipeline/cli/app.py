@@ -59,8 +59,8 @@ def run(
     out
         Folder of this run; ``runs/<name of the case file>`` if left out.
     until
-        Last stage to run: mat, surface, enclosure, tetmesh, quality, export, compare, solve (which needs OpenFOAM) or
-        report; report if left out, without solve.
+        Last stage to run: mat, surface, enclosure, tetmesh, quality, export, compare, solve or report; report if left
+        out, and solve only where the case file has [solve] or this says so.
     set_
         Override a key of the case file: ``--set mat.seed=7``. May be repeated.
     force
@@ -87,7 +87,7 @@ def solve(
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
     quiet: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
-    """Solve the flow of a run that is there, with OpenFOAM; a solution that was stopped continues.
+    """Solve the flow of a run that is there; a solution by OpenFOAM that was stopped continues.
 
     Parameters
     ----------
@@ -139,6 +139,41 @@ def export(
     from pipeline.cli.exporting import export_run
 
     export_run(run, format_, out, set_, as_json, quiet)
+
+
+@app.command
+def converge(
+    case: Path,
+    *,
+    seeds: int = 1,
+    out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+    set_: Annotated[tuple[str, ...], Parameter(name=["--set", "-s"], negative="", consume_multiple=False)] = (),
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    quiet: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Solve a case on three meshes and tell its pressure drop with its error: convergence.json, a table, a plot.
+
+    Tells the order of convergence, the limit for vanishing cells and an interval, and what the mesh, slip, the box and
+    the seed each change. Finished runs are used again.
+
+    Parameters
+    ----------
+    case
+        The case file (TOML), or the name of a bundled case.
+    seeds
+        Mats of this many seeds are solved, on the case's mesh, to tell what chance changes.
+    out
+        Folder of the case's own run, which gets the result; ``runs/<name of the case file>`` if left out.
+    set_
+        Override a key of the case file: ``--set mat.seed=7``. May be repeated.
+    as_json
+        Print convergence.json instead of tables.
+    quiet
+        Print nothing but errors.
+    """
+    from pipeline.cli.converging import converge_case
+
+    converge_case(found(case), out or Path("runs") / case.stem, seeds, set_, as_json, quiet)
 
 
 @app.command

@@ -83,11 +83,12 @@ def solve_stokes(
     for wall in ("no_slip", "slip") if fiber_wall == "slip" or length < unit else ("no_slip",):
 
         def tell(iterations: int, drop: float, error: float, wall: str = wall) -> None:
+            # an error that falls from 1 to the tolerance, in even steps on a logarithmic scale
             share = math.log(min(max(error, settings.tolerance), 1.0)) / math.log(settings.tolerance)
+            known = f", changed by {100 * error:.2g} %" if math.isfinite(error) else ""
             progress(
-                f"solve: {wall.replace('_', ' ')}, iteration {iterations}, pressure drop {drop * scale:.5g} Pa, "
-                f"changed by {100 * error:.2g} %",
-                share,
+                f"solve: {wall.replace('_', ' ')}, iteration {iterations}, pressure drop {drop * scale:.5g} Pa{known}",
+                max(share, 0.0),
             )
 
         found[wall] = creep(

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 _REACH = 1.5  # mean fiber diameters; no wall is that far from every fiber
 _LEASH = 0.3  # how far a node may move, in lengths of its shortest edge
 _THINNEST = 0.2  # of a straight cell's volume: the least that a node's move, or a curved cell's Jacobian, may leave
+_ROUNDS = 4  # of letting edges near a wall follow it
+_LEAST_BEND = 0.1  # share of its bend below which an edge is straight
 _ON_FIBER = 1e-3  # mean fiber diameters; a node nearer than this lies on its fiber
 
 
@@ -43,7 +45,7 @@ class Walls:
     axis : (w, 3) array
         Its direction.
     straight : int
-        Edges on the walls that stay straight, since a cell would turn inside out or no fiber is near.
+        Edges on the walls that are not bent all the way, since a cell would turn inside out or no fiber is near.
     edges : int
         Edges on the walls.
     """
@@ -100,12 +102,16 @@ def curve_walls(
     )
     offset = np.zeros_like(middle)
     offset[edge] = np.where(near[:, None], bent - middle[edge], 0.0)
-    offset, curved = _straightened(moved, nodes, middle, offset)
+    held = np.zeros(len(middle), bool)
+    held[edge] = True
+    both = (free[nodes.ends[:, 0]] | free[nodes.ends[:, 1]]).astype(np.float64)
+    wanted = offset[edge]
+    offset, curved = _straightened(moved, nodes, middle, _spread(nodes, offset, held, both))
     positions = np.concatenate([moved, middle + offset])
     wall = np.concatenate([corners, nodes.vertices + edge])
     fiber, normal, axis = _true_normals(positions[wall], distance, pieces, radius)
-    is_bent = (offset[edge] != 0.0).any(axis=1) | (np.abs(distance.at(middle[edge])) < _ON_FIBER)
-    return Walls(positions, curved, wall, fiber, normal, radius[fiber], axis, int((~is_bent).sum()), len(edge))
+    bent_fully = (offset[edge] == wanted).all(axis=1) & near
+    return Walls(positions, curved, wall, fiber, normal, radius[fiber], axis, int((~bent_fully).sum()), len(edge))
 
 
 def _moved_vertices(
@@ -127,25 +133,49 @@ def _moved_vertices(
         moved[back] = points[back]
 
 
+def _spread(nodes: Nodes, offset: Floats, held: Bools, free: Floats) -> Floats:
+    """Let the middles of edges near a wall follow those on it, so that cells over a curved wall are not squeezed.
+
+    `held` are the edges on the wall; `free` has 0 where an edge lies in a plane across that axis.
+    """
+    edges = nodes.cells[:, 4:] - nodes.vertices
+    moved = offset.copy()
+    for _ in range(_ROUNDS):
+        near = np.flatnonzero((moved != 0.0).any(axis=1)[edges].any(axis=1))
+        of_near = edges[near]
+        total, count = np.zeros_like(moved), np.zeros(len(moved))
+        np.add.at(total, of_near, (moved[of_near].sum(axis=1, keepdims=True) - moved[of_near]) / 5.0)
+        np.add.at(count, of_near, 1.0)
+        mean = free * total / np.maximum(count, 1.0)[:, None]
+        moved = np.where(held[:, None], offset, mean)
+    return moved
+
+
 def _straightened(points: Floats, nodes: Nodes, middle: Floats, offset: Floats) -> tuple[Floats, Bools]:
-    """Take the bend out of the edges of cells that would turn inside out, until none does."""
+    """Take the bend out of the edges of cells that would turn inside out, step by step, until none does."""
     edges = nodes.cells[:, 4:] - nodes.vertices
     middles = 0.5 * (np.eye(4)[EDGES[:, 0]] + np.eye(4)[EDGES[:, 1]])
     corners = np.concatenate([np.eye(4), middles, rule(True)[0]])
     slopes = shape(corners)[1]
     straight = 6.0 * volumes(points, nodes.cells[:, :4])
+    share = np.ones(len(offset))
+    bent = (offset != 0.0).any(axis=1)
+    cells = np.flatnonzero(bent[edges].any(axis=1))
     while True:
-        bent = (offset != 0.0).any(axis=1)
-        cells = np.flatnonzero(bent[edges].any(axis=1))
-        at = np.concatenate([points, middle + offset])[nodes.cells[cells]]
+        at = np.concatenate([points, middle + share[:, None] * offset])[nodes.cells[cells]]
         jacobian = np.linalg.det(np.einsum("cka,qkb->cqab", at, slopes))
         bad = cells[(jacobian < _THINNEST * straight[cells, None]).any(axis=1)]
         if not len(bad):
-            curved = np.zeros(len(nodes.cells), bool)
-            curved[cells] = True
-            return offset, curved
-        offset = offset.copy()
-        offset[edges[bad]] = 0.0
+            break
+        share[np.unique(edges[bad])] *= 0.5
+        share[share < _LEAST_BEND] = 0.0
+        # only what touches an edge that was changed can have become better or worse
+        touched = np.zeros(len(offset), bool)
+        touched[np.unique(edges[bad])] = True
+        cells = np.flatnonzero((touched & bent)[edges].any(axis=1))
+    offset = share[:, None] * offset
+    curved: Bools = (offset != 0.0).any(axis=1)[edges].any(axis=1)
+    return offset, curved
 
 
 def _true_normals(at: Floats, distance: "FiberDistance", pieces: Pieces, radius: Floats) -> tuple[Ints, Floats, Floats]:

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 FORMAL_ORDER = 2.0
-"""Of the schemes that we write (linear interpolation, corrected gradients)."""
+"""Of the finite volumes that we write; second-order elements reach it or more, so it is on the safe side for them."""
 
 _LOWEST_ORDER = 0.5
 _ASYMPTOTIC = 0.1  # relative distance of the observed from the formal order within which the mesh counts as fine

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from validation.convergence import convergence
+from pipeline.study.convergence import convergence
 
 
 @given(
