@@ -89,7 +89,8 @@ def fibers(lattice: str, solidity: float) -> tuple[str, list[list[int]]]:
     """Give a lattice as a file of fibers, and the fibers of each cell along the flow."""
     a = 0.5e6 * _DIAMETER
     side = pitch(lattice, solidity) * a
-    lines, cells = [], []
+    lines: list[str] = []
+    cells: list[list[int]] = []
 
     def add(one: tuple[float, float, float], two: tuple[float, float, float]) -> int:
         number = len(lines) // 2

@@ -460,7 +460,7 @@ def view(run: Path, *, scene: str | None = None, screenshot: Path | None = None,
     run
         The folder of a run, whole or partial.
     scene
-        One view: mat-top, mat-side, duct, cut, close-up, cells, mesh-fibers or worst.
+        One view: mat-top, mat-side, duct, cut, close-up, cells, mesh-fibers, flow, flow-slice or worst.
     screenshot
         Draw the view (duct unless another is named) into this file, png or jpg, instead of opening a window.
     html

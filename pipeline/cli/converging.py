@@ -16,8 +16,9 @@ from pipeline.errors import CaseError
 from pipeline.line import store
 from pipeline.line.places import disk_trouble_explained, own_file
 from pipeline.line.run import report
+from pipeline.nouns.convergence import RESULT, convergence_tables
 
-RESULT, PLOT = "convergence.json", "convergence.svg"
+PLOT = "convergence.svg"
 
 
 def converge_case(path: Path, folder: Path, seeds: int, overrides: tuple[str, ...], as_json: bool, quiet: bool) -> None:
@@ -28,7 +29,6 @@ def converge_case(path: Path, folder: Path, seeds: int, overrides: tuple[str, ..
     with listening(Console(stderr=True), quiet or as_json) as tell:
         from pipeline.study.converge import converge
         from pipeline.study.converge_plot import plot_convergence
-        from pipeline.study.converge_table import convergence_tables
 
         found = converge(case, folder, seeds, tell)
         from pipeline.analytics.tables.plots import save_figure

@@ -114,8 +114,7 @@ def test_walls_are_on_the_true_fibers_and_the_flow_along_them() -> None:
     assert field.curved.any()
     outward = field.positions[wall] * [0.0, 1.0, 1.0] / domain.radius[0]
     through = np.einsum("ij,ij->i", field.velocity[wall], outward)
-    # the normal of the least leak is that of the fiber within a few degrees on facets of 22
-    assert np.abs(through).max() < 0.1 * np.linalg.norm(field.velocity[wall], axis=1).max()
+    assert np.abs(through).max() < 1e-6 * np.linalg.norm(field.velocity[wall], axis=1).max()
 
 
 def test_the_field_is_read_at_any_place_of_a_cell() -> None:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _TYPESET = str.maketrans("u23", "µ²³")
+_MANY_BARS = 60
 _SECTORS = 12  # of 15 degrees each
 _BINS = 60
 _MANY = 30.0  # the worst over the median, from which a logarithmic scale shows more
@@ -176,6 +177,18 @@ def models_chart(comparison: Comparison, solution: Solution | None) -> Markup:
         axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.4, -0.14), ncols=2)
 
     return chart("models", draw, (7.6, 1.4 + 0.3 * len(rows)))
+
+
+def drag_chart(solution: Solution) -> Markup:
+    """Drag of each fiber along the flow, in the order of ``mat/fibers.csv``."""
+    drags = 1e9 * np.array(solution.drag_per_fiber)
+
+    def draw(axes: "Axes") -> None:
+        axes.bar(np.arange(len(drags)), drags, color=BLUE, width=1.0 if len(drags) > _MANY_BARS else 0.8)
+        axes.set(xlabel="fiber", ylabel="drag along the flow [nN]", title="Drag per fiber")
+        axes.set_xlim(-0.6, len(drags) - 0.4)
+
+    return chart("drag-per-fiber", draw)
 
 
 def prediction_charts(medium: FilterSettings, flow: FlowSettings) -> list[Markup]:

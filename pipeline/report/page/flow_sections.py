@@ -10,10 +10,11 @@ from pipeline.analytics.settings import FilterSettings, FlowSettings
 from pipeline.analytics.tables.rows import comparison_tables, length, prediction_tables
 from pipeline.line.results import Results
 from pipeline.nouns.comparison import Comparison
+from pipeline.nouns.convergence import ConvergedDrop, convergence_tables, read_convergence
 from pipeline.nouns.fibers import Mat
 from pipeline.nouns.flow import Solution
 from pipeline.nouns.mat_measures import MatMeasures
-from pipeline.nouns.section import Charts, Columns, Facts, Part, Section, Table, Text
+from pipeline.nouns.section import Charts, Columns, Facts, Part, Picture, Pictures, Section, Table, Text
 from pipeline.report.page import charts, words
 
 _WIDE = 4  # columns of a table from which it takes the width of the page
@@ -47,19 +48,41 @@ def solution(content: Results) -> Section | None:
     s, found = content.get(Solution), content.get(Comparison)
     if s is None:
         return None
+    converged = read_convergence(content.folder)
     facts = [
-        ("pressure drop", f"{s.pressure_drop:.4g} Pa"),
+        ("pressure drop", f"{s.pressure_drop:.4g} Pa, {_WALLS[s.fiber_wall]}"),
+        *_both_walls(s),
         ("permeability of the mat", f"{1e12 * s.permeability:.4g} µm²"),
-        ("drag on the fibers", f"{1e9 * s.drag:.4g} nN"),
-        ("flow rate", f"{1e9 * s.flow_rate:.4g} mm³/s"),
+        ("drag on the fibers", f"{s.drag:.4g} N"),
+        ("flow rate", f"{s.flow_rate:.4g} m³/s"),
+        ("forces and mass balance to", f"{abs(s.force_balance_error):.1g} and {abs(s.mass_balance_error):.1g}"),
         ("iterations", f"{s.iterations:,}, {'settled' if s.converged else 'not settled'}"),
-        ("time", f"{s.seconds:.3g} s on {s.cores} core{'s' if s.cores > 1 else ''}"),
+        ("solver and time", f"{s.engine}, {s.seconds:.3g} s on {s.cores} core{'s' if s.cores > 1 else ''}"),
     ]
+    if s.reynolds is not None and s.knudsen is not None:
+        facts.insert(3, ("Reynolds and Knudsen number", f"{s.reynolds:.2g} and {s.knudsen:.2g} ({s.regime} flow)"))
+    if s.wall_edges:
+        curved = 1.0 - (s.straight_wall_edges or 0) / s.wall_edges
+        facts.append(("edges on walls that lie on the true fibers", f"{curved:.0%}"))
     if s.effective_fiber_diameter is not None:
         facts.append(("fiber diameter with which the chosen model agrees", length(s.effective_fiber_diameter)))
     if s.f_star is not None:
         facts.append(("drag per length over viscosity and velocity, F*", f"{s.f_star:.5g}"))
-    parts: list[Part] = [Facts(tuple(facts))]
+    parts: list[Part] = [Facts(tuple(facts)), Text(_what_is_known(s, converged), "note")]
+    if converged is not None:
+        parts += convergence_tables(converged)
+    parts.append(
+        Pictures(
+            (
+                Picture("flow", "Streamlines between the fibers, air from below."),
+                Picture("flow-slice", "Speed and pressure on a plane along the flow, air from below."),
+            )
+        )
+    )
+    if s.drag_per_fiber:
+        parts.append(
+            Charts((charts.drag_chart(s),), "Drag of each fiber along the flow, in the order of mat/fibers.csv.")
+        )
     if found is not None:
         against = tuple(
             (row.title or name, words.finite(row.mesh), f"{row.mesh / s.pressure_drop - 1:+.1%}")
@@ -67,7 +90,49 @@ def solution(content: Results) -> Section | None:
             if math.isfinite(row.mesh)
         )
         parts.append(Table("", ("model", "Pa from the mesh's solidity", "against CFD"), against))
+        parts += _outside_the_models(s, found)
     return Section("solution", "Flow", "Solved flow", tuple(parts))
+
+
+_WALLS = {"slip": "with slip on the fibers", "no_slip": "without slip on the fibers"}
+
+
+def _both_walls(s: Solution) -> list[tuple[str, str]]:
+    if s.pressure_drop_slip is None or s.pressure_drop_no_slip is None:
+        return []
+    more = s.pressure_drop_no_slip / s.pressure_drop_slip - 1.0
+    both = f"{s.pressure_drop_no_slip:.4g} Pa and {s.pressure_drop_slip:.4g} Pa: {more:+.1%} ({s.other_wall})"
+    return [("without and with slip", both)]
+
+
+def _what_is_known(s: Solution, converged: ConvergedDrop | None) -> str:
+    if converged is not None:
+        drop = converged.pressure_drop
+        return (
+            f"On three meshes: {drop.value:.4g} Pa, between {drop.low:.4g} and {drop.high:.4g} Pa. The tables say what "
+            "the mesh, slip, the box and the seed change."
+        )
+    settled = "" if s.pressure_drop_error is None else f" The iterations leave {s.pressure_drop_error:.0e} of it."
+    return (
+        f"This number stands on one mesh, in one box, of one seed.{settled} What the mesh leaves is not known without "
+        "others: fibertwin converge solves on three and gives the number with its interval."
+    )
+
+
+def _outside_the_models(s: Solution, found: Comparison) -> list[Part]:
+    """Say so where the solved drop leaves the band of the models that are in their range, and why it may."""
+    inside = [row.mesh for row in found.models.values() if math.isfinite(row.mesh) and not row.notes]
+    if not inside or min(inside) <= s.pressure_drop <= max(inside):
+        return []
+    side = "below" if s.pressure_drop < min(inside) else "above"
+    return [
+        Text(
+            f"The solved drop lies {side} what the models in their range say, {min(inside):.3g} to {max(inside):.3g} Pa. "
+            "A small box, fibers that are denser at the frame of the plan than in its middle, and one seed may each do "
+            "that; where a finer mesh or another seed does not bring it back, do not trust it.",
+            "note",
+        )
+    ]
 
 
 def prediction(content: Results) -> Section | None:

@@ -13,6 +13,7 @@ import numpy as np
 from pipeline.line import store
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.fibers import Mat
+from pipeline.nouns.flow_field import FlowField
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.surface import Surface
 from pipeline.report.views.drawing import BACKGROUND, Scene
@@ -22,7 +23,7 @@ from pipeline.report.views.scenes import SCENES, Subject
 if TYPE_CHECKING:
     from PIL import Image
 
-_NOUNS = {"mat": Mat, "surface": Surface, "domain": FluidDomain, "mesh": FaceMesh}
+_NOUNS = {"mat": Mat, "surface": Surface, "domain": FluidDomain, "mesh": FaceMesh, "flow": FlowField}
 ORDER = "order.json"
 _KINDS: dict[str, type[Subject] | type[MeshSubject]] = {kind.__name__: kind for kind in (Subject, MeshSubject)}
 _FRAME = 16  # pixels of background kept around a picture

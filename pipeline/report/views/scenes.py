@@ -16,6 +16,7 @@ from pipeline.geometry.polyhedra import polygons
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.fibers import Mat
+from pipeline.nouns.flow_field import FlowField
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.patches import FIBERS
 from pipeline.nouns.surface import Surface
@@ -41,6 +42,7 @@ from pipeline.report.views.drawing import (
     scaled,
     surface_of,
 )
+from pipeline.report.views.flow_scenes import draw_slice, draw_streamlines
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -58,6 +60,7 @@ class Subject:
     domain: FluidDomain | None = None
     mesh: FaceMesh | None = None
     worst: Floats | None = None
+    flow: FlowField | None = None
 
 
 def fibers_of_faces(mesh: FaceMesh, domain: FluidDomain) -> Ints:
@@ -180,6 +183,28 @@ def worst_cells(plotter: "pv.Plotter", subject: Subject) -> None:
     look_aslant(plotter, _slab(subject))
 
 
+def streamlines(plotter: "pv.Plotter", subject: Subject) -> None:
+    """Draw streamlines between the fibers, air from below, colored by speed."""
+    domain, flow = subject.domain, subject.flow
+    assert domain is not None
+    assert flow is not None
+    draw_streamlines(plotter, flow, _mesh_fibers(subject))
+    box = scaled(domain.box, MICRO)
+    add_outline(plotter, box, width=2.0)
+    look(plotter, box, towards=(-0.9, 1.75, -0.55), up=(0, 0, 1))
+
+
+def slice_of_the_flow(plotter: "pv.Plotter", subject: Subject) -> None:
+    """Draw speed and pressure on a plane along the flow, air from below, fibers left out."""
+    domain, flow = subject.domain, subject.flow
+    assert domain is not None
+    assert flow is not None
+    draw_slice(plotter, flow, _middle(subject) * MICRO)
+    (x0, y0, z0), (x1, y1, z1) = scaled(domain.box, MICRO).lower, scaled(domain.box, MICRO).upper
+    around = Box((x0, y0, z0 - 0.15 * (z1 - z0)), (x1, y1 + 1.08 * (y1 - y0), z1))
+    look(plotter, around, towards=(-1.0, 0.0, 0.0), up=(0, 0, 1))
+
+
 SCENES = {
     "mat-top": Scene(("mat",), (900, 900), mat_from_above),
     "mat-side": Scene(("mat",), (1400, 640), mat_from_the_side),
@@ -188,6 +213,8 @@ SCENES = {
     "close-up": Scene(("mat", "domain", "mesh"), (1000, 800), cut_close_up),
     "cells": Scene(("mat", "domain", "mesh"), (1000, 800), cells_behind_the_cut),
     "mesh-fibers": Scene(("mat", "domain", "mesh"), (1000, 800), fibers_of_the_mesh),
+    "flow": Scene(("mat", "domain", "mesh", "flow"), (1100, 1150), streamlines),
+    "flow-slice": Scene(("mat", "domain", "mesh", "flow"), (1300, 1000), slice_of_the_flow),
     "worst": Scene(("mat", "mesh", "worst"), (1000, 800), worst_cells),
 }
 """Every view by its name."""

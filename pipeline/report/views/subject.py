@@ -8,6 +8,7 @@ from pipeline.line.results import Results
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.fibers import Mat
+from pipeline.nouns.flow_field import FlowField
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.quality import QualityReport
 from pipeline.nouns.surface import Surface
@@ -20,7 +21,8 @@ def subject_of(content: Results) -> Subject | None:
     if mat is None:
         return None
     surface, domain, mesh = content.get(Surface), content.get(FluidDomain), content.get(FaceMesh)
-    return Subject(mat, surface, domain, mesh, places_of_trouble(content.get(QualityReport)))
+    trouble = places_of_trouble(content.get(QualityReport))
+    return Subject(mat, surface, domain, mesh, trouble, content.get(FlowField))
 
 
 def places_of_trouble(report: QualityReport | None) -> Floats | None:

@@ -129,7 +129,7 @@ def slip(
     rub = coo_array(
         (single.ravel(), (np.repeat(one, 6, axis=1).ravel(), np.tile(one, (1, 6)).ravel())), shape=(count, count)
     ).tocsr()
-    bound, allowed = _allowed(fixed, nodes, unknown, walls, six, area, values, weights)
+    bound, allowed = _allowed(fixed, nodes, unknown, walls, six, area, weights)
     flux = np.einsum("fqa,qi,qv,q->fvia", area, values, places, weights)
     through = (np.repeat(one[:, :3], 6, axis=1).ravel(), np.tile(one, (1, 3)).ravel(), flux.reshape(-1, 3))
     return Conditions(fixed, given, bound, allowed, friction, rub, through)
@@ -175,25 +175,17 @@ def _allowed(
     walls: Walls,
     six: Ints,
     area: Floats,
-    values: Floats,
     weights: Floats,
 ) -> tuple[Ints, Floats]:
     """Directions in which each unknown on the wall may move: not across any of the walls that meet there."""
     count = len(fixed)
-    # the flux through a wall is the sum of the velocities on the middles of its edges times these
-    share = np.einsum("fqa,qk,q->fka", area, values, weights)
     number = unknown[six]
-    flux, mean = np.zeros((count, 3)), np.zeros((count, 3))
-    np.add.at(flux, number.ravel(), share.reshape(-1, 3))
-    np.add.at(mean, number.ravel(), np.repeat(np.einsum("fqa,q->fa", area, weights), 6, axis=0))
-    flux, mean = (each / np.maximum(np.linalg.norm(each, axis=1, keepdims=True), 1e-300) for each in (flux, mean))
+    unit = np.zeros((count, 3))
+    np.add.at(unit, number.ravel(), np.repeat(np.einsum("fqa,q->fa", area, weights), 6, axis=0))
+    unit /= np.maximum(np.linalg.norm(unit, axis=1, keepdims=True), 1e-300)
     at, true = unknown[walls.wall], walls.normal
-    fits = np.einsum("ij,ij->i", true, mean[at]) > _SAME_WAY
-    mean[at[fits]] = true[fits]
-    # on a flat wall the vertices have no part in the flux, and where they have little it may point anywhere
-    same = np.abs(np.einsum("ij,ij->i", flux, mean)) > _SAME_WAY
-    unit = np.where(same[:, None], flux, mean)
-    unit *= np.where(np.einsum("ij,ij->i", unit, mean) < 0.0, -1.0, 1.0)[:, None]
+    fits = np.einsum("ij,ij->i", true, unit[at]) > _SAME_WAY
+    unit[at[fits]] = true[fits]
     bound = np.unique(at)
     place = np.full(count, -1)
     place[bound] = np.arange(len(bound))
