@@ -6,6 +6,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from pipeline.analytics.models.comparison import compare
 from pipeline.case import Case
 from pipeline.enclosure.duct import enclose
@@ -16,10 +18,12 @@ from pipeline.mat.generate import generate
 from pipeline.mat.measures import measure
 from pipeline.mat.settings import Constant, LayeredSettings, Stop
 from pipeline.nouns.flow import Solution
+from pipeline.nouns.flow_field import FlowField
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.mesh_measures import MeshingCost, TetmeshMeasures
 from pipeline.quality.judge import judge
 from pipeline.quality.settings import QualitySettings
+from pipeline.solve.stokes.nodes import number_nodes
 from pipeline.surface.settings import SurfaceSettings
 from pipeline.surface.union import unite
 from tests.sample_meshes import duct
@@ -35,6 +39,16 @@ SOLUTION = Solution(12.5, 1e-12, 1e-9, 1e-14, 0.001, 1e-6, 400, True, 12.0, 2)
 def small_mesh() -> FaceMesh:
     """Make a duct with a bar across it, as large as the mat is."""
     return duct(size=(10e-6, 10e-6, 20e-6), jitter=0.2).face_mesh()
+
+
+def still_flow() -> FlowField:
+    """Give the air of the small mesh one velocity, and a pressure that falls along the duct."""
+    mesh = small_mesh()
+    nodes = number_nodes(mesh.tets(), len(mesh.points))
+    places = np.concatenate([mesh.points, nodes.middles(mesh.points)])
+    velocity = np.tile([0.0, 0.0, 0.025], (len(places), 1))
+    pressure = 3.0 * (1.0 - mesh.points[:, 2] / mesh.points[:, 2].max())
+    return FlowField(places, nodes.cells, velocity, pressure, np.zeros(len(nodes.cells), bool), 0.0)
 
 
 def manifest(stage: str) -> dict[str, Any]:

@@ -23,7 +23,7 @@ from pipeline.report.views.painter import possible, trimmed
 from pipeline.report.views.render import Painting, rendering_environment
 from pipeline.report.views.scenes import SCENES, Subject, fibers_of_faces
 from pipeline.report.views.subject import subject_of
-from tests.report.contents import whole
+from tests.report.contents import SOLUTION, still_flow, whole
 from tests.report.pages import read
 
 
@@ -33,7 +33,7 @@ def test_a_mat_alone_can_be_seen_from_above_and_from_the_side() -> None:
 
 
 def test_everything_can_be_seen_of_a_whole_run() -> None:
-    subject = subject_of(whole())
+    subject = subject_of(whole(still_flow()))
     assert subject is not None
     assert possible(subject) == tuple(SCENES)
 
@@ -59,7 +59,7 @@ def test_pictures_lose_their_empty_margin() -> None:
 
 @pytest.mark.usefixtures("rendering")
 def test_a_page_holds_a_picture_of_every_scene(tmp_path: Path) -> None:
-    path = write_report(whole(), tmp_path)
+    path = write_report(whole(still_flow(), SOLUTION), tmp_path)
     page = read(path.read_text(encoding="utf-8"))
     # the reason, if there is one, is worth more than the list of what is missing
     assert "no-pictures" not in page.values("id"), [text for text in page.text if "process" in text]

@@ -127,7 +127,8 @@ def _outside_the_models(s: Solution, found: Comparison) -> list[Part]:
     side = "below" if s.pressure_drop < min(inside) else "above"
     return [
         Text(
-            f"The solved drop lies {side} what the models in their range say, {min(inside):.3g} to {max(inside):.3g} Pa. "
+            f"The solved drop lies {side} what the models in their range say, {min(inside):.3g} to "
+            f"{max(inside):.3g} Pa. "
             "A small box, fibers that are denser at the frame of the plan than in its middle, and one seed may each do "
             "that; where a finer mesh or another seed does not bring it back, do not trust it.",
             "note",
