@@ -32,8 +32,8 @@ class SurfaceMeasures:
         Volume over the slab's.
     overlap_volume : float [m3]
         Summed volumes of the fibers' tubes, cut at the plan's sides, less the union's: what fibers share with each
-        other and, where one runs into itself, with themselves, and what clearing the splinters took (a few
-        ten-thousandths). Exact, and negative only where voids were filled.
+        other and, where one runs into itself, with themselves (but not what the two pieces at a ball share), and what
+        clearing the splinters took (a few ten-thousandths). Exact, and negative only where voids were filled.
     radius_error_max, radius_error_min : float [-]
         How far the polygon's corners lie outside the true radius, and the middles of its sides inside, relative.
     components : int

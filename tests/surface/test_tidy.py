@@ -12,7 +12,7 @@ from pipeline.surface.remesh import check_with_meshlab
 from pipeline.surface.settings import SurfaceSettings
 from pipeline.surface.union import unite
 
-from .mats import RADIUS, SIDE, WRAPPING_A_CORNER, mat_of
+from .mats import BENT, RADIUS, SIDE, WRAPPING_A_CORNER, mat_of
 
 _RNG = np.random.default_rng(5)
 PILE = mat_of(
@@ -87,6 +87,12 @@ def test_measures_of_a_cross() -> None:
     assert measures.overlap_volume == pytest.approx(16 / 3 * RADIUS**3, rel=0.03)
     assert (measures.components, measures.genus, measures.self_intersections) == (1, 0, 0)
     assert measures.radius_error_min < 0 < measures.radius_error_max < 1e-3
+
+
+def test_what_two_pieces_share_in_the_ball_on_their_bend_is_no_overlap() -> None:
+    settings = SurfaceSettings(joint="sphere", caps="hemisphere", smallest_edge=0)
+    measures = measure_surface(BENT, unite(BENT, settings), settings)
+    assert abs(measures.overlap_volume) < 1e-9 * measures.volume
 
 
 def test_two_crossings_make_a_ring() -> None:
