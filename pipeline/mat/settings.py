@@ -20,6 +20,9 @@ PERIMETER_CHORD = (2 * (math.sqrt(2) + math.asinh(1)) / 3 + 1.0766359) / 3
 _ISOTROPIC_CHORD = math.pi / 4
 """Mean length of uniform random chords in sides of the square (Cauchy: pi area / perimeter)."""
 
+_NARROWEST = 0.01  # gap between the fibers of an array, in diameters
+_SHALLOWEST = 0.05  # depth of an array, in diameters
+
 STOPS = ("coverage", "thickness", "solidity", "count", "pressure_drop", "efficiency")
 """The quantities that may end a mat."""
 
@@ -449,6 +452,18 @@ class ArraySettings(_Settings):
         if self.solidity >= most:
             reason = f"a row of a {self.arrangement} array has room for its fibers below {most:.4f} only"
             raise refusal("solidity", self.solidity, reason)
+        gap = self.pitch / self.fiber_diameter - 1.0
+        if gap < _NARROWEST:
+            reason = (
+                f"leaves gaps of {gap:.2g} diameters between the fibers of a row, which no mesh resolves; "
+                f"take {math.floor(1e4 * most / (1.0 + _NARROWEST) ** 2) / 1e4:.4f} or less"
+            )
+            raise refusal("solidity", self.solidity, reason)
+        if self.depth is not None and self.depth < _SHALLOWEST * self.fiber_diameter:
+            reason = (
+                f"is less than {_SHALLOWEST:g} fiber diameters, and no cell fits into it; the flow is the same at any"
+            )
+            raise refusal("depth", self.depth, reason)
         return self
 
 

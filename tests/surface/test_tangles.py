@@ -82,6 +82,14 @@ def test_the_coil_from_the_field(tmp_path: Path) -> None:
     assert measures.overlap_volume == pytest.approx(cylinder - measures.volume, rel=0.01)
 
 
+def test_legs_that_meet_soon_after_a_bend_are_parted_by_their_cut() -> None:
+    # the way between the legs is shorter than half a turn about the tube: only their triangles tell that they cross
+    mat = mat_of([(1, 5, 5), (8, 5, 5), (8.33, 6.87, 5), (1, 4.6, 5)])
+    bodies, _, _ = fiber_bodies(mat, SurfaceSettings())
+    assert len(bodies) == 2
+    assert [len(crossing_pairs(*body)) for body in bodies] == [0, 0]
+
+
 def test_a_straight_or_gently_bent_fiber_stays_one_tube() -> None:
     angle = np.linspace(0, np.pi, 40)
     arc = [(5 + 3 * math.cos(a), 1 + 3 * math.sin(a), 5.0) for a in angle]
