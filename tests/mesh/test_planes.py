@@ -8,7 +8,7 @@ import pytest
 from pipeline.geometry.box import Box
 from pipeline.geometry.tets import boundary
 from pipeline.mesh.boundary import assign
-from pipeline.mesh.engines.ftetwild.ftetwild import _plane_errors
+from pipeline.mesh.engines.ftetwild.ftetwild import _plane_errors, lost_part
 from pipeline.mesh.improve.settle import at_fibers
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
@@ -54,6 +54,24 @@ def test_a_dent_is_missing_from_its_plane(axis: int, name: str) -> None:
     errors = _plane_errors(points, np.delete(tets, inner[0], axis=0), whole)
     assert errors.pop(name) == pytest.approx(-1 / 50)
     assert list(errors.values()) == pytest.approx([0.0] * 5, abs=1e-14)
+    found = lost_part(points, np.delete(tets, inner[0], axis=0), whole)
+    assert found is not None
+    assert found[0] == name
+    assert found[1] == pytest.approx(-1 / 50)
+    assert lost_part(points, tets, whole) is None
+
+
+def test_sharp_air_that_is_filled_beside_a_fiber_is_no_dent() -> None:
+    points, tets = hollow_box()
+    middle = points[tets].mean(axis=1)
+    # the fiber reaches from the cube's middle down to the inlet, less the cell of air at its foot
+    reaching = tets[~((np.abs(middle[:, :2] - 0.5) < 0.1).all(axis=1) & (middle[:, 2] < 0.5))]
+    whole = domain_of(mesh_of(points, reaching))
+    center = points[reaching].mean(axis=1)
+    beside = ((points[:, 2] == 0.0)[reaching].sum(axis=1) == 3) & (np.abs(center[:, :2] - 0.5) < 0.3).all(axis=1)
+    filled = reaching[np.arange(len(reaching)) != np.flatnonzero(beside)[0]]
+    assert _plane_errors(points, filled, whole)["inlet"] == pytest.approx(-1 / 48)
+    assert lost_part(points, filled, whole) is None
 
 
 def test_only_cells_with_a_vertex_on_a_fiber_may_be_given_to_it() -> None:
