@@ -399,6 +399,61 @@ def micrograph(
 
 
 @app.command
+def tomography(
+    stack: Path,
+    *,
+    voxel: str,
+    window: str | None = None,
+    shape: str | None = None,
+    kind: str = "uint8",
+    threshold: str = "otsu",
+    smallest: int = 0,
+    dark: Annotated[bool, Parameter(negative="")] = False,
+    surface: Path | None = None,
+    case: Path | None = None,
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    quiet: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Make the surface of a tomogram's solid, of the voxels' own volume, and the case that it is the medium of.
+
+    Parameters
+    ----------
+    stack
+        A folder of TIFFs, one per slice; a TIFF of many pages; .npy (slices first); or .raw. Slices are planes across
+        the flow.
+    voxel
+        Edge of a voxel: ``--voxel "0.7 um"``.
+    window
+        Voxels to take: x0,y0,z0,x1,y1,z1. Only these are read.
+    shape
+        Of a .raw file: x,y,z, whose x runs fastest.
+    kind
+        Numbers of a .raw file: uint8, <u2, >u2 or float32.
+    threshold
+        Gray value from which on a voxel is solid, or otsu.
+    smallest
+        Islands and closed pores of fewer voxels than this are left out.
+    dark
+        The solid is darker than the air.
+    surface
+        Write the surface into this file (.vtp, .ply or .stl, in um) instead of ``runs/<name>/surface.vtp``.
+    case
+        Write the case of this medium into this file (.toml).
+    as_json
+        Print JSON with SI numbers instead of words.
+    quiet
+        Print nothing but errors.
+    """
+    from pipeline.cli.listen import listening
+    from pipeline.cli.tomograms import surface_of_tomogram
+
+    with listening(err, quiet or as_json) as tell:
+        surface_of_tomogram(
+            stack, voxel, window, shape, kind, threshold, smallest, dark, surface, case, as_json, quiet, tell
+        )
+
+
+@app.command
 def study(
     study: Path,
     *,

@@ -32,7 +32,7 @@ def measure_picture(
     quiet: bool,
 ) -> None:
     """Measure a picture, print what was seen, and write its page and its case."""
-    picture = read_micrograph(path, _length(pixel, "--pixel"), _length(bar, "--bar"), _window(window))
+    picture = read_micrograph(path, read_length(pixel, "--pixel"), read_length(bar, "--bar"), _window(window))
     if case is not None and case.exists():
         raise CaseError(f"{case} is there already; name another file for the case")
     measured = measure(picture)
@@ -57,7 +57,8 @@ def measure_picture(
             out.print(what, file, markup=False, highlight=False, soft_wrap=True)
 
 
-def _length(text: str | None, option: str) -> float | None:
+def read_length(text: str | None, option: str) -> float | None:
+    """Read a length with its unit that an option was given [m]."""
     if text is None:
         return None
     try:
@@ -122,8 +123,8 @@ def take_picture(
     from pipeline.micrograph.synthetic import Exposure, micrograph_of
 
     mat = _mat_of(source)
-    length = _length(pixel, "--pixel") or 2.0 * float(mat.radius.mean()) / 20.0
-    shade = _length(depth, "--depth") or 6.0 * float(mat.radius.mean())
+    length = read_length(pixel, "--pixel") or 2.0 * float(mat.radius.mean()) / 20.0
+    shade = read_length(depth, "--depth") or 6.0 * float(mat.radius.mean())
     picture = micrograph_of(mat, length, Exposure(shade, edge, blur, noise, seed))
     if into.suffix.lower() != ".png":
         raise CaseError(f"{into}: a micrograph is written as .png")

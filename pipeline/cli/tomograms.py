@@ -1,0 +1,158 @@
+"""`fibertwin tomography`: from gray voxels to a surface, and to the case that it is the medium of."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+
+from pipeline.cli.measuring import read_length
+from pipeline.errors import CaseError
+from pipeline.geometry.triangles import area_vectors, enclosed_volume
+from pipeline.line.places import disk_trouble_explained
+from pipeline.progress import Progress
+from pipeline.tomography.contour import surface_of
+from pipeline.tomography.read import MEMORY_PER_VOXEL, read_voxels
+from pipeline.tomography.solid import segment
+
+
+def surface_of_tomogram(
+    path: Path,
+    voxel: str,
+    window: str | None,
+    shape: str | None,
+    kind: str,
+    threshold: str,
+    smallest: int,
+    dark: bool,
+    surface: Path | None,
+    case: Path | None,
+    as_json: bool,
+    quiet: bool,
+    tell: Progress,
+) -> None:
+    """Read, segment, make the surface, write it and its case, and tell what it is like."""
+    edge = read_length(voxel, "--voxel")
+    assert edge is not None
+    level = None if threshold == "otsu" else _number(threshold, "--threshold")
+    if smallest < 0:
+        raise CaseError(f"--smallest {smallest}: a number of voxels, 0 or more")
+    into = surface or Path("runs") / path.stem / "surface.vtp"
+    if into.suffix.lower() not in (".vtp", ".ply", ".stl"):
+        raise CaseError(f"--surface {into}: write .vtp (64 bits), .ply or .stl")
+    if case is not None and case.exists():
+        raise CaseError(f"{case} is there already; name another file for the case")
+    tell(f"reading {path.name}")
+    gray = read_voxels(path, _whole(window, 6, "--window"), _whole(shape, 3, "--shape"), kind)
+    tell(f"{gray.size / 1e6:.1f} million voxels, about {gray.size * MEMORY_PER_VOXEL / 2**30:.1f} GiB")
+    found = segment(gray, level, smallest, dark)
+    tell("making the surface")
+    points, triangles = surface_of(found.solid, edge)
+    size = np.array(found.solid.shape) * edge
+    told = {
+        "voxels": list(found.solid.shape),
+        "size": size.tolist(),
+        "threshold": found.threshold,
+        "islands": found.islands,
+        "pores": found.pores,
+        "solidity": {
+            "voxels": found.solidity,
+            "surface": enclosed_volume(points, triangles) / float(np.prod(size)),
+        },
+        "triangles": len(triangles),
+        "mean_diameter": _mean_diameter(points, triangles, size),
+        "surface": str(into),
+    }
+    with disk_trouble_explained(into):
+        _write(into, points, triangles)
+    if case is not None:
+        with disk_trouble_explained(case):
+            case.parent.mkdir(parents=True, exist_ok=True)
+            case.write_text(_case(into, case, path), encoding="utf-8")
+    if as_json:
+        sys.stdout.write(json.dumps(told, indent=2, allow_nan=False) + "\n")
+    elif not quiet:
+        _show(told, into, case)
+
+
+def _mean_diameter(points: np.ndarray[Any, Any], triangles: np.ndarray[Any, Any], size: np.ndarray[Any, Any]) -> float:
+    """Four times volume over area, without what the window's sides cut [m]."""
+    corners = points[triangles]
+    on_side = np.zeros(len(triangles), dtype=bool)
+    for axis in range(3):
+        for place in (0.0, size[axis]):
+            on_side |= (corners[:, :, axis] == place).all(axis=1)
+    area = float(np.linalg.norm(area_vectors(points, triangles)[~on_side], axis=1).sum())
+    return 4.0 * enclosed_volume(points, triangles) / area
+
+
+def _write(path: Path, points: np.ndarray[Any, Any], triangles: np.ndarray[Any, Any]) -> None:
+    import pyvista as pv
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    pv.PolyData.from_regular_faces(points * 1e6, triangles).save(path)
+
+
+def _case(surface: Path, case: Path, source: Path) -> str:
+    place = surface.resolve()
+    return "\n".join(
+        [
+            f"# The medium of a tomogram, {' '.join(source.name.split())}.",
+            "# Which pressure drop has it, solved on its own surface?",
+            "",
+            "[mat]",
+            'generator = "surface"',
+            f"file = {json.dumps(str(place))}",
+            'unit = "um"',
+            "",
+            "[tetmesh]",
+            'engine = "tetwild"',
+            "",
+            "[flow]",
+            'face_velocity = "2.5 cm/s"',
+            'temperature = "293 K"',
+            "",
+        ]
+    )
+
+
+def _show(told: dict[str, Any], into: Path, case: Path | None) -> None:
+    out = Console()
+
+    def show(text: str) -> None:
+        out.print(text, markup=False, highlight=False, soft_wrap=True)
+
+    size = " x ".join(f"{1e6 * length:.4g}" for length in told["size"])
+    share = told["solidity"]
+    show(f"window          {size} um, {' x '.join(map(str, told['voxels']))} voxels")
+    left_out = f"{told['islands']} voxels of islands and {told['pores']} of pores left out"
+    show(f"threshold       {told['threshold']:g}; {left_out}")
+    show(f"solidity        {share['voxels']:.3%} of the voxels, {share['surface']:.3%} within the surface")
+    show(f"mean diameter   {1e6 * told['mean_diameter']:.4g} um, from volume over surface")
+    show(f"surface         {into}, {told['triangles']:,} triangles, in um")
+    if case is not None:
+        show(f"run it: fibertwin run {case}")
+
+
+def _number(text: str, option: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise CaseError(f"{option} {text!r}: write otsu, or a gray value") from None
+
+
+def _whole(text: str | None, count: int, option: str) -> Any:
+    if text is None:
+        return None
+    try:
+        numbers = tuple(int(part) for part in text.split(","))
+    except ValueError:
+        numbers = ()
+    if len(numbers) != count or (option == "--shape" and min(numbers, default=0) < 1):
+        example = {"--window": "x0,y0,z0,x1,y1,z1, as 0,0,0,200,200,100", "--shape": "x,y,z, as 512,512,300"}[option]
+        raise CaseError(f"{option} {text!r}: write {example}")
+    return numbers
