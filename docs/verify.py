@@ -1,7 +1,7 @@
 """Measure what docs/verification.md shows, and write its tables and plots: ``make verify``.
 
-``python docs/verify.py RUNS [PART ...]`` runs some parts only: square, hexagonal, slip, mats, filters, and page, which
-writes tables and plots from what the others left in docs/verification. Finished runs are reused.
+``python docs/verify.py RUNS [PART ...]`` runs some parts only: square, hexagonal, slip, lattices, mats, filters, and
+page, which writes tables and plots from what the others left in docs/verification. Finished runs are reused.
 """
 
 # SPDX-License-Identifier: GPL-3.0-or-later
@@ -15,8 +15,10 @@ from pipeline.line.run import Run, run
 from pipeline.nouns.flow import Solution
 from pipeline.pictures.flow import read_flow, slice_figure, streamline_figure
 from pipeline.pictures.panels import write_png
+from pipeline.solve.settings import SolveSettings
 from validation import filters, tables
 from validation.ladder import SLIP, Rung, ladder
+from validation.lattices import LatticeRung, lattices
 from validation.mats import MatRun, mat_runs
 from validation.plots import ladder_figure, mats_figure
 from validation.records import read_records, write_records
@@ -27,7 +29,8 @@ CASES = DOCS.parent / "cases"
 ARRAYS = ("square", "hexagonal")
 SLIP_SOLIDITIES = (0.1,)
 FILTERS = ("default", "figure10_corner")
-PARTS = (*ARRAYS, "slip", "mats", "filters", "page")
+MESHERS = ("tetwild", "lattice")
+PARTS = (*ARRAYS, "slip", "lattices", "mats", "filters", "page")
 
 
 def told(what: str, done: float | None = None) -> None:
@@ -45,6 +48,9 @@ def measure(part: str, runs: Path) -> None:
         write_records(
             RECORDS / "mats.csv", mat_runs(read_case(CASES / "verification" / "mat.toml"), runs / "mats", told)
         )
+    elif part == "lattices":
+        rungs = [rung for mesher in MESHERS for rung in lattices(runs / "lattices", mesher, told)]
+        write_records(RECORDS / "lattices.csv", rungs)
     elif part == "filters":
         for name in FILTERS:
             solve_filter(name, runs / name)
@@ -55,7 +61,7 @@ def measure(part: str, runs: Path) -> None:
 
 def solve_filter(name: str, folder: Path) -> None:
     """Solve a bundled case, keep its pressure drops, and draw the flow."""
-    case = read_case(CASES / f"{name}.toml")
+    case = read_case(CASES / f"{name}.toml").model_copy(update={"solve": SolveSettings(engine="openfoam")})
     run(case, folder, "solve", tell=told, without=frozenset({"report"}))
     this = Run(case, folder)
     write_records(RECORDS / f"{name}.csv", filters.pressure_drops(this))
@@ -67,13 +73,17 @@ def solve_filter(name: str, folder: Path) -> None:
 
 def write_page() -> None:
     """Fill the page's tables and draw its plots."""
+    page = PAGE.read_text(encoding="utf-8")
     arrays = [rung for name in ARRAYS for rung in read_records(RECORDS / f"{name}.csv", Rung)]
     slip = read_records(RECORDS / "slip.csv", Rung)
     mats = read_records(RECORDS / "mats.csv", MatRun)
+    if (RECORDS / "lattices.csv").is_file():
+        page = tables.filled(
+            page, "lattices", tables.lattice_table(read_records(RECORDS / "lattices.csv", LatticeRung))
+        )
     # the first mat is that of the case's own box, and on the coarsest mesh; the sizes came last, on the case's own
     resolution = [each for each in mats if each.side == mats[0].side]
     sizes = [each for each in mats if each.edge == mats[-1].edge]
-    page = PAGE.read_text(encoding="utf-8")
     page = tables.filled(page, "ladder", tables.ladder_table(arrays))
     page = tables.filled(page, "slip", tables.ladder_table(slip))
     page = tables.filled(page, "balances", tables.balance_table([("arrays", arrays), ("slip", slip), ("mats", mats)]))

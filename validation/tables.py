@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pipeline.errors import StageError
 from pipeline.study.convergence import Convergence
 from validation.ladder import FACTORS, Rung, judged
+from validation.lattices import EDGES, LatticeRung
 from validation.mats import MatRun, mean_and_half_width, over_finest, spread
 
 
@@ -36,6 +37,17 @@ def filled(page: str, name: str, content: str) -> str:
     if not opened or not closed:
         raise StageError(f"the page has no place for {name}: put {start} and {end} where it goes")
     return f"{before}{start}\n\n{content}\n\n{end}{after}"
+
+
+def lattice_table(rungs: list[LatticeRung]) -> str:
+    """Permeability of lattices on three meshes against the exact one, by the error of their resistance."""
+    rows = []
+    for start in range(0, len(rungs), len(EDGES)):
+        climbed = rungs[start : start + len(EDGES)]
+        fine = climbed[-1]
+        row = [fine.lattice, f"{fine.solidity:g}", fine.mesher, f"{fine.exact:.5g}"]
+        rows.append([*row, *(f"{_percent(rung.error)} ({rung.cells:,})" for rung in climbed)])
+    return table(["lattice", "solidity", "mesher", "exact k/a2", "coarse (cells)", "middle", "fine"], rows)
 
 
 def ladder_table(rungs: list[Rung]) -> str:

@@ -65,7 +65,7 @@ def write_openfoam(
     _write(folder / "system/fvSolution", foam.format_fv_solution())
     _write(folder / "system/decomposeParDict", format_decompose(2))
     _write(folder / "case.foam", "")
-    for name, script in (("Allrun", foam.format_allrun(settings.dialect)), ("Allclean", foam.ALLCLEAN)):
+    for name, script in (("Allrun", foam.format_allrun(flow, settings.dialect)), ("Allclean", foam.ALLCLEAN)):
         _write(folder / name, script)
         (folder / name).chmod(0o755)
 

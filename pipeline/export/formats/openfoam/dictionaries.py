@@ -270,12 +270,16 @@ fi
 for value in inletPressure inletFlow outletFlow; do
     echo "$value: $(tail -q -n 1 postProcessing/$value/*/surfaceFieldValue*.dat | tail -n 1)"
 done
+# OpenFOAM's incompressible pressure is over the density: m2/s2, not Pa
+drop=$(tail -q -n 1 postProcessing/inletPressure/*/surfaceFieldValue*.dat | tail -n 1 |
+    awk '{printf "%.5g", DENSITY * $2}')
+echo "pressure drop: $drop Pa (inletPressure above is in m2/s2, over the air's density of DENSITY kg/m3)"
 """
 
 
-def format_allrun(dialect: Dialect = "com") -> str:
-    """Script that checks the mesh and runs the case, on one core or more."""
-    return _ALLRUN.replace("SOLVER", SOLVER[dialect])
+def format_allrun(flow: Flow, dialect: Dialect = "com") -> str:
+    """Script that checks the mesh and runs the case, on one core or more, and tells the pressure drop in Pa."""
+    return _ALLRUN.replace("SOLVER", SOLVER[dialect]).replace("DENSITY", repr(flow.density))
 
 
 ALLCLEAN = """#!/bin/sh
