@@ -105,3 +105,17 @@ def kuwabara_interception(solidity: float, ratio: float) -> float:
     r = 1.0 + ratio
     value = (1 - solidity / 2) / r - (1 - solidity) * r - solidity / 2 * r**3 + 2 * r * np.log(r)
     return float(value / (2 * hydrodynamic(solidity)))
+
+
+def between_plates(places: Floats) -> Floats:
+    """Poiseuille's flow of mean velocity 1 along z between plates at x = -1 and x = 1."""
+    velocity = np.zeros_like(places)
+    velocity[:, 2] = 1.5 * np.maximum(1.0 - places[:, 0] ** 2, 0.0)
+    return velocity
+
+
+def plate_starts(count: int) -> Floats:
+    """Places at z = 0 between the plates, as dense as the flow: its flux within x is (3 x - x^3) / 4 + 1/2."""
+    share = (np.arange(count) + 0.5) / count
+    x = 2.0 * np.cos((np.arccos(1.0 - 2.0 * share) + 4.0 * np.pi) / 3.0)
+    return np.column_stack([x, np.full(count, 0.1), np.zeros(count)])

@@ -37,7 +37,7 @@ _STEPS = 1_000_000
 _SLICES = 20
 _PATHS = 2000
 _MOST_CELLS = 100_000  # for the concentration, which splits each in eight
-_RESOLVED = 0.3  # of a cell: the thinnest layer of diffusion that is tried
+_RESOLVED = 0.5  # of a cell: the thinnest layer of diffusion that is tried
 _TRUSTED = 0.1  # relative error of the capture depth up to which the concentration's answer is given
 _ALONE = 5  # of a mechanism alone, one particle for so many of all together
 _SIEVED = 0.02  # of the particle's diameter: two fibers within that of its surface hold it together
@@ -120,7 +120,7 @@ def capture(
 
 
 def _stray(medium: Medium, settings: CaptureSettings, air: FlowSettings) -> float:
-    filter, _ = _filter(medium, 0.0)
+    filter, _ = filter_for(medium, 0.0)
     point = Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     pace = pace_of(float(medium.mat.radius.min()), False, _TRANSITS * medium.box.size[2] / air.face_velocity)
     *_, fates = counted(filter, point, pace, settings.seed, 0, _PATHS, None)
@@ -142,7 +142,7 @@ def _size(
 ) -> _Size:
     diameters = settings.diameters()
     diameter = diameters[number]
-    filter, of_piece = _filter(medium, diameter)
+    filter, of_piece = filter_for(medium, diameter)
     at = f"capture: {diameter * 1e9:.4g} nm, size {number + 1} of {len(diameters)}"
     count = settings.particles or (None if settings.half_width else PARTICLES)
     fates = _follow(filter, diameter, settings.mechanisms, number, count, medium, settings, air, tell, at, kept)
@@ -186,7 +186,8 @@ def _diffused(
     return 1.0 - found.value if found.error < _TRUSTED else None
 
 
-def _filter(medium: Medium, diameter: float) -> tuple[Filter, Ints]:
+def filter_for(medium: Medium, diameter: float) -> tuple[Filter, Ints]:
+    """Prepare a filter for particles of one size [m]; and the fiber of each of its grid's pieces."""
     pieces, radius = medium.pieces, medium.mat.radius[medium.pieces.fiber]
     lower, upper = np.array(medium.box.lower), np.array(medium.box.upper)
     shifts = [np.zeros(3)]

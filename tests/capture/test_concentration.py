@@ -8,15 +8,14 @@ import pytest
 from pipeline.capture.concentration import Penetration, _cut, concentration_penetration
 from pipeline.capture.contact import distances, fiber_grid
 from pipeline.geometry.tets import boundary, volumes
-from tests.capture.test_trajectories import plane_flow
-from validation.closed_flows import brick, sampled
+from validation.closed_flows import between_plates, brick, sampled
 from validation.exact_capture import plates_penetration
 
 
 def test_graetz_penetration_between_plates_to_one_percent_without_scatter() -> None:
     length, diffusivity, radius = 40.0, 0.02, 5000.0
     lower, upper = np.array([-1.0, 0, 0]), np.array([1.0, 0.2, length])
-    cells = sampled(*brick(lower, upper, (6, 1, 120)), plane_flow)
+    cells = sampled(*brick(lower, upper, (6, 1, 120)), between_plates)
     x = np.array([-1.0 - radius, 1.0 + radius])
     start = np.column_stack([x, np.full(2, 0.1), np.full(2, -10.0)])
     end = start + np.array([0.0, 0.0, length + 20.0])

@@ -2,8 +2,6 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-import math
-
 import numpy as np
 import pytest
 
@@ -12,8 +10,16 @@ from pipeline.capture.contact import fiber_grid
 from pipeline.capture.intervals import share_interval
 from pipeline.capture.langevin import Motion
 from pipeline.capture.trajectories import CAPTURED, PASSED, TIMED_OUT, Duct, tracked
-from pipeline.nouns.arrays import Floats
-from validation.closed_flows import brick, half_ring, kuwabara, kuwabara_interception, on_rim, sampled
+from validation.closed_flows import (
+    between_plates,
+    brick,
+    half_ring,
+    kuwabara,
+    kuwabara_interception,
+    on_rim,
+    plate_starts,
+    sampled,
+)
 from validation.exact_capture import plates_penetration
 
 
@@ -35,17 +41,10 @@ def test_interception_in_kuwabaras_flow_is_exact_to_half_a_percent(ratio: float)
     assert (fates.outcome != TIMED_OUT).all()
 
 
-def plane_flow(places: Floats) -> Floats:
-    """Poiseuille's flow of mean velocity 1 along z between plates at x = -1 and x = 1."""
-    velocity = np.zeros_like(places)
-    velocity[:, 2] = 1.5 * np.maximum(1.0 - places[:, 0] ** 2, 0.0)
-    return velocity
-
-
 def test_graetz_penetration_between_plates() -> None:
     # plates are fibers of radius 5000: over the duct's width of .2 they bend by 1e-6
     length, diffusivity, count, radius = 40.0, 0.02, 4000, 5000.0
-    cells = sampled(*brick(np.array([-1.0, 0, 0]), np.array([1.0, 0.2, length]), (4, 1, 40)), plane_flow)
+    cells = sampled(*brick(np.array([-1.0, 0, 0]), np.array([1.0, 0.2, length]), (4, 1, 40)), between_plates)
     x = np.array([-1.0 - radius, 1.0 + radius])
     start = np.column_stack([x, np.full(2, 0.1), np.full(2, -10.0)])
     end = start + np.array([0.0, 0.0, length + 20.0])
@@ -58,10 +57,7 @@ def test_graetz_penetration_between_plates() -> None:
         np.array([1.0, 0.2, length]),
         1.0,
     )
-    # the flux within x is (3 x - x^3) / 4 + 1/2
-    share = (np.arange(count) + 0.5) / count
-    roots = np.cos((np.arccos(1.0 - 2.0 * share) + 4.0 * math.pi) / 3.0) * 2.0
-    starts = np.column_stack([roots, np.full(count, 0.1), np.zeros(count)])
+    starts = plate_starts(count)
     duct = Duct(-2.0, 2.0, 0.0, 0.2, 0.0, length, False)
     motion = Motion(0.0, 0.0, diffusivity, 0.0, 0.0, 0.0)
     fates = tracked(starts, 0, 1, 0, motion, duct, pace_of(1.0, True, 1e4), cells, grid)
