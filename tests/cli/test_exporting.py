@@ -65,6 +65,27 @@ def test_what_it_writes_is_what_the_run_has(fibertwin: Fibertwin, finished: Path
         assert {patch.name: patch.count for patch in found.patches} == {p.name: p.count for p in mesh.patches}
 
 
+def test_the_fibers_patch_of_vtk_has_the_number_of_the_fiber_it_lies_on(
+    fibertwin: Fibertwin, finished: Path, tmp_path: Path
+) -> None:
+    import pyvista as pv
+
+    assert fibertwin("export", finished, "--format", "vtk", "--out", tmp_path, "--quiet").code == 0
+    wall = pv.read(tmp_path / "vtk/boundary/fibers.vtp")
+    mat = Run.opened(finished).read(Mat)
+    centers, number = wall.cell_centers().points, np.asarray(wall.cell_data["fiber"])
+    start = mat.segment_starts()
+    begin, end = mat.nodes[start], mat.nodes[start + 1]
+    axis = end - begin
+    # distance of each face from each segment's wall
+    share = np.clip(np.einsum("fsk,sk->fs", centers[:, None] - begin, axis) / (axis**2).sum(axis=1), 0, 1)
+    away = np.linalg.norm(centers[:, None] - begin - share[..., None] * axis, axis=2) - mat.radius[mat.segment_fibers()]
+    own = np.where(mat.segment_fibers() == number[:, None], away, np.inf).min(axis=1)
+    # all lie on their own fiber's wall, within a tenth of its diameter, but for bridges where fibers meet
+    assert (np.abs(own) < 0.2 * mat.radius.max()).mean() > 0.98
+    assert len(np.unique(number)) > 1
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [

@@ -15,6 +15,7 @@ from pipeline.export.formats.read_vtk import read_vtk
 from pipeline.geometry.faces import compacted
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.mesh import FaceMesh, Patch
+from pipeline.nouns.patches import FIBERS
 from pipeline.progress import Progress, silent
 
 if TYPE_CHECKING:
@@ -23,7 +24,13 @@ if TYPE_CHECKING:
 VOLUME = "internal.vtu"
 
 
-def write_vtk(mesh: FaceMesh, folder: Path, fields: Mapping[str, Floats], progress: Progress = silent) -> None:
+def write_vtk(
+    mesh: FaceMesh,
+    folder: Path,
+    fields: Mapping[str, Floats],
+    progress: Progress = silent,
+    fibers: Ints | None = None,
+) -> None:
     """Write `mesh.vtm`, which names `internal.vtu` and `boundary/<patch>.vtp`.
 
     Parameters
@@ -35,6 +42,8 @@ def write_vtk(mesh: FaceMesh, folder: Path, fields: Mapping[str, Floats], progre
     fields : mapping of name to (cells,) array
         Put on the cells, for example the quality of each.
     progress : Progress
+    fibers : (faces of the fibers' patch,) int array, optional
+        Number of the fiber at each, put on the patch as ``fiber``.
     """
     progress("export: VTK")
     grid = volume_grid(mesh)
@@ -45,6 +54,8 @@ def write_vtk(mesh: FaceMesh, folder: Path, fields: Mapping[str, Floats], progre
     for patch in mesh.patches:
         surface = patch_surface(mesh, patch.name)
         surface.cell_data["owner"] = mesh.owner[patch.start : patch.start + patch.count]
+        if patch.name == FIBERS and fibers is not None:
+            surface.cell_data["fiber"] = fibers
         surface.save(folder / "boundary" / f"{patch.name}.vtp")
     (folder / "mesh.vtm").write_text(format_vtm(mesh.patches), encoding="utf-8")
 
@@ -160,6 +171,6 @@ def format_vtm(patches: tuple[Patch, ...]) -> str:
 FORMAT = Format(
     "vtk",
     (".vtu", ".vtk", ".vti", ".vts", ".vtr"),
-    write=lambda mesh, folder, order: write_vtk(mesh, folder, order.fields, order.progress),
+    write=lambda mesh, folder, order: write_vtk(mesh, folder, order.fields, order.progress, order.fibers),
     read=read_vtk,
 )

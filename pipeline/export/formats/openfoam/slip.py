@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pipeline.export.wall_fibers import wall_fibers
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import FaceMesh
@@ -71,15 +72,5 @@ def fiber_radius(mesh: FaceMesh, domain: FluidDomain) -> float | Floats:
     radii = np.unique(domain.radius)
     if len(radii) == 1:
         return float(radii[0])
-    from scipy.spatial import cKDTree
-
-    on_fiber = domain.fiber >= 0
-    triangles, fiber = domain.triangles[on_fiber], domain.fiber[on_fiber]
-    corners = domain.points[triangles]
-    samples = np.concatenate([corners.mean(axis=1), corners.reshape(-1, 3)])
-    owner = np.concatenate([fiber, np.repeat(fiber, 3)])
-    patch = next(patch for patch in mesh.patches if patch.name == FIBERS)
-    centers = mesh.polyhedra().centers[patch.start : patch.start + patch.count]
-    _, nearest = cKDTree(samples).query(centers)
-    found: Floats = domain.radius[owner[nearest]]
+    found: Floats = domain.radius[wall_fibers(mesh, domain)]
     return found
