@@ -2,6 +2,7 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -52,7 +53,7 @@ def read_su2(path: Path) -> FaceMesh:
 
 
 def _content(text: str) -> FileMesh:
-    lines = Tokens([line.split("%")[0].replace("=", "= ").split() for line in text.splitlines()])
+    lines = Tokens([re.sub(r"\s*=", "= ", line.split("%")[0]).split() for line in text.splitlines()])
     points = np.empty((0, 3))
     cells: list[Cells] = []
     surfaces: list[NamedFaces] = []
