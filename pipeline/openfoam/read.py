@@ -12,6 +12,7 @@ from pipeline.errors import StageError
 from pipeline.nouns.arrays import Ints
 from pipeline.nouns.mesh import FLAT, FaceMesh, Patch
 from pipeline.openfoam.dictionary import COMMENT, Words, read_named
+from pipeline.reading import open_file
 
 _HEADER = re.compile(rb"FoamFile\s*\{(?P<body>.*?)\}\s*", re.DOTALL)
 _COUNT = re.compile(rb"\s*(?P<count>\d{1,10})\s*")
@@ -89,9 +90,11 @@ def read_openfoam(case: Path) -> FaceMesh:
 def _contents(path: Path) -> bytes:
     if not path.exists() and path.with_name(path.name + ".gz").exists():
         raise ValueError(f"{path.name} is compressed; run gunzip in the folder")
-    if path.stat().st_size > LARGEST_FILE:
-        raise ValueError(f"{path.name} is larger than {LARGEST_FILE} bytes")
-    return path.read_bytes()
+    # a pipe in a file's place would keep a reader waiting for good
+    with open_file(path) as file:
+        if path.stat().st_size > LARGEST_FILE:
+            raise ValueError(f"{path.name} is larger than {LARGEST_FILE} bytes")
+        return file.read()
 
 
 class _List:

@@ -17,6 +17,7 @@ from pipeline.export.formats.format import Order
 from pipeline.export.settings import ExportSettings
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.mesh import FaceMesh
+from pipeline.openfoam.foam_file import Encoding
 from tests.openfoam import AIR
 from tests.sample_meshes import kuhn_tets
 
@@ -305,7 +306,7 @@ def vtk(draw: Random, folder: Path) -> tuple[Path, Block]:
         writer.SetCompressorType(int(draw.integers(0, 4)))
         writer.SetByteOrder(int(draw.integers(0, 2)))
         writer.SetHeaderType(int(draw.choice([32, 64])))
-        writer.SetEncodeAppendedData(int(draw.integers(0, 2)))
+        writer.SetEncodeAppendedData(bool(draw.integers(0, 2)))
         writer.SetBlockSize(int(draw.choice([64, 32768])))
     writer.SetFileName(str(path))
     writer.SetInputData(grid)
@@ -326,7 +327,9 @@ def _grid_file(draw: Random, folder: Path, how: str) -> tuple[Path, Block]:
     grid.save(path, binary=bool(draw.integers(0, 2)))
     cells = np.zeros((int(np.prod(shape)), 8), np.int64)
     faces = 2 * int(shape[0] * shape[1] + shape[1] * shape[2] + shape[0] * shape[2])
-    return path, _Grid(np.empty((0, 3)), "hexahedron", cells, np.empty(faces), np.empty(0), float(np.prod(size)))
+    return path, _Grid(
+        np.empty((0, 3)), "hexahedron", cells, np.empty(faces, np.int64), np.empty(0, np.int64), float(np.prod(size))
+    )
 
 
 class _Grid(Block):
@@ -356,13 +359,13 @@ def fluent(draw: Random, folder: Path) -> tuple[Path, Block]:
     runs = [("interior-1", "interior", 2, 0, inner), ("between", word, code, inner, mesh.internal)]
     runs += [(p.name, "wall", 3, p.start, p.start + p.count) for p in mesh.patches]
     for zone, (_, _, code, start, end) in enumerate(runs, 0x21):
-        rows = []
+        listed = []
         for face in range(start, end):
             corners = mesh.corners[mesh.offsets[face] : mesh.offsets[face + 1]][::-1] + 1
             other = int(mesh.neighbour[face]) + 1 if face < mesh.internal else 0
-            rows.append(" ".join(f"{k:x}" for k in [len(corners), *corners, int(mesh.owner[face]) + 1, other]))
+            listed.append(" ".join(f"{k:x}" for k in [len(corners), *corners, int(mesh.owner[face]) + 1, other]))
         lines.append(
-            f"(13 ({zone:x} {start + 1:x} {end:x} {code:x} {draw.choice([0, 5])})(\n" + "\n".join(rows) + "\n))"
+            f"(13 ({zone:x} {start + 1:x} {end:x} {code:x} {draw.choice([0, 5])})(\n" + "\n".join(listed) + "\n))"
         )
     lines += [f"({draw.choice([39, 45])} ({zone} {kind} {name})())" for zone, (name, kind, *_) in enumerate(runs, 0x21)]
     return _text(draw, folder / f"it.{any_case(draw, 'msh')}", lines), one
@@ -422,9 +425,8 @@ def openfoam(draw: Random, folder: Path) -> tuple[Path, Block]:
         place = folder / time / "polyMesh"
         place.mkdir(parents=True)
         shown = mesh if time == times[-1] else block(draw).mesh()
-        write_poly_mesh(
-            shown, place, {p.name: "type wall;" for p in shown.patches}, str(draw.choice(["ascii", "binary"]))
-        )  # type: ignore[arg-type]
+        encoding: Encoding = "ascii" if draw.integers(0, 2) else "binary"
+        write_poly_mesh(shown, place, {p.name: "type wall;" for p in shown.patches}, encoding)
     place = folder / times[-1] / "polyMesh"
     boundary = (place / "boundary").read_text()
     boundary = boundary.replace("type wall;", "type mappedPatch; offset (0 0 1); extra { a { b 1; } nFaces 77; }", 1)

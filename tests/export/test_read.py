@@ -3,6 +3,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import contextlib
+import os
+import signal
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pipeline.errors import StageError
+from pipeline.export.formats import vtk_sizes
+from pipeline.export.formats.isolated import isolated
 from pipeline.export.formats.vtk import write_vtk
 from pipeline.export.read import read_mesh
 from pipeline.export.settings import ExportSettings, Format
@@ -18,7 +22,7 @@ from pipeline.export.write import export
 from tests.openfoam import AIR
 from tests.quality.test_kinds import beside_smaller
 from tests.sample_meshes import duct
-from tests.security.inputs import seeds
+from tests.security.inputs import in_time, seeds
 
 BLOCK_POINTS = np.array([[x, y, z] for z in (0, 1, 2.0) for y in (0, 1.0) for x in (0, 1.0)])
 
@@ -141,3 +145,79 @@ def test_what_vtk_itself_writes_of_hexahedra_and_polyhedra_is_read(tmp_path: Pat
     found = read_mesh(tmp_path / "internal.vtu")
     assert (found.cells, found.faces, found.internal) == (mesh.cells, mesh.faces, mesh.internal)
     assert found.volume == pytest.approx(1.5, rel=1e-12)
+
+
+@pytest.mark.parametrize("suffix", ["vtu", "vtk", "inp", "bdf", "msh", "su2", "mesh"])
+def test_a_pipe_in_the_place_of_a_mesh_is_refused_at_once(suffix: str, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / f"it.{suffix}")
+    with in_time(), pytest.raises(StageError, match="it is"):
+        read_mesh(tmp_path / f"it.{suffix}")
+
+
+def test_a_pipe_in_the_place_of_openfoams_points_is_refused_at_once(tmp_path: Path) -> None:
+    place = tmp_path / "constant/polyMesh"
+    place.mkdir(parents=True)
+    os.mkfifo(place / "points")
+    with in_time(), pytest.raises(StageError, match="pipe"):
+        read_mesh(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("name", "line"),
+    [
+        ("it.inp", "*INCLUDE, INPUT=/etc/hostname"),
+        ("it.inp", "*Node, input = nodes.txt"),
+        ("it.inp", "*element, TYPE=C3D4, INPUT=elements.txt"),
+        ("it.bdf", "BEGIN BULK\nINCLUDE '/etc/hostname'"),
+        ("it.bdf", "include it.bdf"),
+        ("it.vtu", '<VTKFile type="PUnstructuredGrid"><X><Piece Source="it.vtu"/></X></VTKFile>'),
+        ("it.vtm", '<VTKFile type="vtkMultiBlockDataSet"/>'),
+        ("it.vtu", '<!DOCTYPE a [<!ENTITY e SYSTEM "/etc/hostname">]><VTKFile type="UnstructuredGrid">&e;</VTKFile>'),
+    ],
+)  # fmt: skip
+def test_a_mesh_file_opens_no_other_file(name: str, line: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_text(line + "\n")
+    with pytest.raises(StageError, match=r"other file|no XML|defines entities|not a mesh"):
+        read_mesh(tmp_path / name)
+
+
+def test_a_file_that_unpacks_to_a_hundred_times_its_size_is_refused_before_it_is_unpacked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import meshio
+
+    # any file may hold a quarter of a gigabyte; here a megabyte
+    monkeypatch.setattr(vtk_sizes, "ALWAYS", 2**20)
+    path = tmp_path / "bomb.vtu"
+    # 9.6 MB of zeros in a file of a hundredth and less
+    meshio.write(path, meshio.Mesh(np.zeros((400_000, 3)), [("tetra", np.array([[0, 1, 2, 3]]))]))
+    assert path.stat().st_size < 96_000
+    with pytest.raises(StageError, match="it says that it holds"):
+        read_mesh(path)
+
+
+def test_a_grid_of_a_few_bytes_and_of_more_cells_than_there_is_memory_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "it.vtk").write_text(
+        "# vtk DataFile Version 5.1\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 9000 9000 9000\nORIGIN 0 0 0\n"
+        "SPACING 1 1 1\n"
+    )
+    with in_time(), pytest.raises(StageError, match="needs more memory than there is"):
+        read_mesh(tmp_path / "it.vtk")
+
+
+def test_a_reader_that_crashes_is_one_error(tmp_path: Path) -> None:
+    def crash(_: Path) -> None:
+        os.kill(os.getpid(), signal.SIGSEGV)
+
+    (tmp_path / "it").touch()
+    with pytest.raises(ValueError, match="crashed its reader \\(signal 11\\)"):
+        isolated(crash, tmp_path / "it")
+
+
+def test_a_mistake_in_a_reader_stays_one(tmp_path: Path) -> None:
+    def stumble(_: Path) -> None:
+        raise AttributeError("a bug")
+
+    (tmp_path / "it").touch()
+    with pytest.raises(RuntimeError, match="AttributeError: a bug"):
+        isolated(stumble, tmp_path / "it")

@@ -8,6 +8,7 @@ a few hundred; ``python -m tests.security.fuzz 20000`` draws as many as one like
 
 import contextlib
 import json
+import shutil
 import signal
 import tempfile
 import warnings
@@ -16,6 +17,7 @@ from functools import cache
 from pathlib import Path
 from types import FrameType
 
+import numpy as np
 from hypothesis import strategies as st
 
 from pipeline.analytics.options import read_options
@@ -32,6 +34,7 @@ from pipeline.mat.exchange import read_fibers
 from pipeline.quality.judge import judge
 from pipeline.study.settings import read_study
 from pipeline.units import parse
+from tests.export.dialects import DIALECTS
 from tests.openfoam import AIR
 from tests.sample_meshes import duct
 
@@ -235,6 +238,19 @@ def mesh_file(draw: st.DataObject) -> None:
         judge(read_mesh(path))
 
 
+def damaged_dialect(draw: st.DataObject) -> None:
+    """Damage a file of a random mesh as some program or person would write it."""
+    place = folder() / "dialect"
+    shutil.rmtree(place, ignore_errors=True)
+    place.mkdir()
+    make = DIALECTS[draw.draw(st.sampled_from(sorted(DIALECTS)))]
+    path, _ = make(np.random.default_rng(draw.draw(st.integers(0, 2**32 - 1))), place)
+    hit = draw.draw(st.sampled_from(sorted(file for file in place.rglob("*") if file.is_file())))
+    hit.write_bytes(damaged(draw, hit.read_bytes()))
+    with refused_or_read():
+        judge(read_mesh(path))
+
+
 def openfoam_mesh(draw: st.DataObject) -> None:
     files = polymesh(draw.draw(st.sampled_from(["ascii", "binary"])))
     place = folder() / "foam-input/constant/polyMesh"
@@ -267,6 +283,7 @@ TARGETS: dict[str, Callable[[st.DataObject], None]] = {
     "options of predict": options,
     "fibers as CSV": fibers,
     "mesh file (Fluent, gmsh, VTU, Abaqus, Nastran, SU2, Medit)": mesh_file,
+    "mesh in a random dialect of eight formats, damaged": damaged_dialect,
     "OpenFOAM mesh, text and binary": openfoam_mesh,
     "folder of a run": run_folder,
 }

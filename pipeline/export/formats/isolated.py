@@ -16,6 +16,7 @@ import psutil
 
 _T = TypeVar("_T")
 _SECONDS = 60.0
+_PR_SET_PDEATHSIG = 1  # of prctl(2)
 _BYTES_PER_SECOND = 1e6  # a slow disk, and base64 to be decoded
 
 
@@ -67,8 +68,15 @@ def isolated(read: Callable[[Path], _T], path: Path) -> _T:
 
 
 def _answer(read: Callable[[Path], _T], path: Path, to: Connection, seconds: float) -> None:
+    import ctypes
+    import faulthandler
     import resource
+    import signal
 
+    # it ends with its parent, however that ends
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+    # a crash is told by the parent, in a line
+    faulthandler.disable()
     # what the library mutters about the file is not for the terminal
     nothing = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nothing, 1)

@@ -88,7 +88,10 @@ def _read(path: Path, legacy: bool) -> Any:
     reader.Update()
     grid = reader.GetOutput()
     # what it warns of it left out
-    said = next((line for line in words.GetOutput().splitlines() if ": " in line and "0x" in line), words.GetOutput())
+    found: Any = words.GetOutput()
+    # it quotes the file, whose bytes need not be text
+    text = found.decode("latin-1") if isinstance(found, bytes) else str(found)
+    said = next((line for line in text.splitlines() if ": " in line and "0x" in line), text)
     require(not said, f"VTK's reader says: {said.rpartition('): ')[2][:200]}")
     require(
         grid is not None and hasattr(grid, "GetCellType"),
