@@ -23,17 +23,48 @@ def neighbors(tets: Ints) -> Ints:
     (m, 4) int array
         By local face as in `pipeline.geometry.tets.FACES`; -1 on the boundary.
 
+    Raises
+    ------
+    ValueError
+        If more than two tetrahedra share a face.
+
     Examples
     --------
     >>> neighbors(np.array([[0, 1, 2, 3], [1, 2, 3, 4]])).tolist()
     [[-1, -1, -1, 1], [0, -1, -1, -1]]
     """
-    found: Ints = _across(np.ascontiguousarray(tets), int(tets.max(initial=-1)) + 1)
+    found, crowded = _across(np.ascontiguousarray(tets), int(tets.max(initial=-1)) + 1)
+    if crowded:
+        raise ValueError(f"{crowded} faces belong to more than two cells")
     return found
 
 
+def pairs_of(across: Ints) -> tuple[Ints, Ints]:
+    """Give the two sides of each face between two tetrahedra.
+
+    Parameters
+    ----------
+    across : (m, 4) int array
+        As `neighbors` gives it.
+
+    Returns
+    -------
+    first, second : (pairs,) int arrays
+        Four times the cell plus its local face, of the cell of lower number and of the other.
+
+    Examples
+    --------
+    >>> first, second = pairs_of(neighbors(np.array([[0, 1, 2, 3], [1, 2, 3, 4]])))
+    >>> first.tolist(), second.tolist()
+    ([3], [4])
+    """
+    cell, side = np.nonzero(across > np.arange(len(across))[:, None])
+    other = across[cell, side]
+    return 4 * cell + side, 4 * other + (across[other] == cell[:, None]).argmax(axis=1)
+
+
 @compiled
-def _across(tets: Ints, vertices: int) -> Ints:
+def _across(tets: Ints, vertices: int) -> tuple[Ints, int]:
     """Match faces within the list of each vertex: that of a face's lowest corner has some ten faces."""
     count = len(tets)
     corners = np.empty((4 * count, 3), np.int64)
@@ -50,17 +81,19 @@ def _across(tets: Ints, vertices: int) -> Ints:
     filled = first[:-1].copy()
     faces = np.empty(4 * count, np.int64)
     across = np.full((count, 4), -1, np.int64)
+    crowded = 0
     for face in range(4 * count):
         low = corners[face, 0]
         for place in range(first[low], filled[low]):
             other = faces[place]
             if corners[other, 1] == corners[face, 1] and corners[other, 2] == corners[face, 2]:
+                crowded += across[other // 4, other % 4] >= 0
                 across[face // 4, face % 4] = other // 4
                 across[other // 4, other % 4] = face // 4
                 break
         faces[filled[low]] = face
         filled[low] += 1
-    return across
+    return across, crowded
 
 
 def boundary_of(tets: Ints, across: Ints) -> tuple[Ints, Ints]:

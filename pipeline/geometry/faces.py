@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.geometry.cells import cell_faces, matched_pairs, rows_of
+from pipeline.geometry.cells import cell_faces, rows_of
 from pipeline.geometry.tets import FACES
 from pipeline.geometry.triangles import Floats, Ints
 
@@ -65,7 +65,10 @@ def tet_faces(tets: Ints) -> TetFaces:
     """
     triangles = tets[:, FACES].reshape(-1, 3)
     cell = np.repeat(np.arange(len(tets)), 4)
-    first, second = matched_pairs(triangles)
+    # numba takes half a second to load
+    from pipeline.geometry.adjacency import neighbors, pairs_of
+
+    first, second = pairs_of(neighbors(tets))
     order = _narrow_band(cell[first], cell[second], len(tets))
     new = np.empty(len(tets), np.int64)
     new[order] = np.arange(len(tets))

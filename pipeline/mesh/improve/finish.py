@@ -4,7 +4,7 @@
 
 import numpy as np
 
-from pipeline.geometry.tets import boundary, volumes
+from pipeline.geometry.tets import volumes
 from pipeline.mesh.boundary import assign
 from pipeline.mesh.distance import fiber_distance
 from pipeline.mesh.engines.flawed import FlawedMeshError
@@ -45,6 +45,9 @@ def finished(
     FlawedMeshError
         If cells without volume remain.
     """
+    # numba takes half a second to load, which no refused case file should cost
+    from pipeline.geometry.adjacency import boundary_of, neighbors
+
     points, tets = used_points(raw.points, raw.tets)
     raw_error = _volume_error(points, tets, domain)
     tell("mending the worst cells", 0.6)
@@ -56,12 +59,12 @@ def finished(
         points, tets, faulty, tips = settled(points, tets, domain, reaches)
         filled += tips
         points, tets = used_points(points, tets)
-        faces, _ = boundary(tets)
+        faces, _ = boundary_of(tets, neighbors(tets))
         walls = faces[assign(points, faces, domain.box, tolerance=0.0) == domain.patches.index(FIBERS)]
         points = fitted(points, tets, walls, free_axes(points, domain.box), distance, limits)
     _check_volumes(points, tets, settings)
 
-    faces, _ = boundary(tets)
+    faces, _ = boundary_of(tets, neighbors(tets))
     patch = assign(points, faces, domain.box, tolerance=0.0)
     _check_patches(patch, domain, settings)
     mesh = TetMesh(points, tets, faces, patch, domain.patches, domain.slab)

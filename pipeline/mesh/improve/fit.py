@@ -77,13 +77,22 @@ def fitted(
         moved = result + off[:, None] * normals
         # beside a plane of the duct a fiber's vertex may have nothing of the mesh between itself and the outside
         movable[((moved < limits[0]) | (moved > limits[1])).any(axis=1)] = 0.0
+        doubtful = np.arange(len(tets))
         for _ in range(_RETREATS):
             moved = np.where(movable[:, None] > 0, moved, result)
-            harmed = (volumes(moved, tets) < _SMALLEST * start) | (sound & (faults(moved, tets, across) > 1.0))
+            found = faults(moved, tets, across, doubtful)
+            harmed = (volumes(moved, tets[doubtful]) < _SMALLEST * start[doubtful]) | (sound[doubtful] & (found > 1.0))
             if not harmed.any():
                 result = moved
                 break
-            movable[np.unique(tets[harmed])] = 0.0
+            stay = np.zeros(len(points), dtype=bool)
+            stay[tets[doubtful[harmed]]] = True
+            movable[stay] = 0.0
+            # only the cells at these vertices change, and the faces of those that touch them
+            changed = stay[tets].any(axis=1)
+            beside = across[changed]
+            changed[beside[beside >= 0]] = True
+            doubtful = np.flatnonzero(changed)
     return result
 
 

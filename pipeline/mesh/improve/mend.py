@@ -222,7 +222,7 @@ def _move(
     return vertices[moved]
 
 
-def faults(points: Floats, tets: Ints, across: Ints) -> Floats:
+def faults(points: Floats, tets: Ints, across: Ints, which: Ints | None = None) -> Floats:
     """How far each cell is beyond what is aimed at, by itself or by a face; above 1 it is faulty.
 
     Parameters
@@ -230,14 +230,19 @@ def faults(points: Floats, tets: Ints, across: Ints) -> Floats:
     points : (n, 3) array
     tets, across : (m, 4) int arrays
         Tetrahedra, and the neighbor of each across each face, -1 on the boundary.
+    which : (k,) int array, optional
+        Cells to look at, all unless given.
 
     Returns
     -------
-    (m,) array
+    (m,) or (k,) array
     """
     found = np.zeros(len(tets))
-    _update(points, tets, across, np.arange(len(tets)), found)
-    return found
+    if which is None:
+        _update(points, tets, across, np.arange(len(tets)), found)
+        return found
+    _update(points, tets, across, which, found)
+    return found[which]
 
 
 def mended(

@@ -84,7 +84,7 @@ def settled(points: Floats, tets: Ints, domain: FluidDomain, reaches: Reaches) -
     from pipeline.mesh.improve.mend import faults
 
     filled = 0.0
-    for _ in range(_PASSES):
+    for turn in range(_PASSES):
         across = neighbors(tets)
         whole = largest_part(across)
         if not whole.all():
@@ -99,7 +99,9 @@ def settled(points: Floats, tets: Ints, domain: FluidDomain, reaches: Reaches) -
         cell, side = np.nonzero((across >= 0) & near[:, None])
         out = ~near[across[cell, side]]
         seam = np.sort(np.take_along_axis(tets[cell[out]], FACES[side[out]], axis=1), axis=1)
-        points, mended, tips = _settled_here(points, tets[near], seam, domain, reaches)
+        # moves alone mend nearly all: what is filled or split afterwards is looked for around the few cells that are left
+        rounds = _FILLINGS if turn else 1
+        points, mended, tips = _settled_here(points, tets[near], seam, domain, reaches, rounds)
         tets = np.concatenate([tets[~near], mended])
         filled += tips
     across = neighbors(tets)
@@ -110,7 +112,7 @@ def settled(points: Floats, tets: Ints, domain: FluidDomain, reaches: Reaches) -
 
 
 def _settled_here(
-    points: Floats, tets: Ints, seam: Ints, domain: FluidDomain, reaches: Reaches
+    points: Floats, tets: Ints, seam: Ints, domain: FluidDomain, reaches: Reaches, rounds: int
 ) -> tuple[Floats, Ints, float]:
     """Settle a part of the mesh that ends at a seam, and give the state with the fewest faulty cells."""
     from pipeline.mesh.improve.mend import mended
@@ -120,7 +122,7 @@ def _settled_here(
     fixed = np.unique(seam)
     loose = np.empty(0, np.int64)
     limits = np.array(domain.box.lower), np.array(domain.box.upper)
-    for filling in range(_FILLINGS):
+    for filling in range(rounds):
         points, tets = split_corners(points, tets, seam)
         walls, at_wall = true_boundary(tets, seam)
         fibers = walls[assign(points, walls, domain.box, tolerance=0.0) == domain.patches.index(FIBERS)]
@@ -140,7 +142,7 @@ def _settled_here(
         count = int(faulty.sum()) + len(tets) * int((volumes(points, tets) <= 0.0).sum())
         if count < fewest:
             fewest, best = count, (points, tets, filled)
-        if not faulty.any():
+        if not faulty.any() or filling == rounds - 1:
             break
         stuck = filling >= _PATIENCE
         # away from the fibers nothing is a crevice: a filled cell at the inlet of a coarse mesh doubled a pressure drop
