@@ -112,7 +112,10 @@ def enclose(surface: Surface, settings: EnclosureSettings, progress: Progress = 
     points, triangles, origin, plane = *_used(points, triangles[keep]), origin[keep], plane[keep]
     patch = np.array([*(PATCHES.index(name) for name in _PLANES), PATCHES.index(FIBERS)])[plane]
     fiber = np.where(origin >= 0, surface.fiber[np.maximum(origin, 0)], -1)
-    return FluidDomain(points, triangles, patch, PATCHES, fiber, surface.radius, box, surface.slab, surface.pieces)
+    return FluidDomain(
+        points, triangles, patch, PATCHES, fiber, surface.radius, box, surface.slab, surface.pieces,
+        cyclic=settings.sides == "cyclic",
+    )  # fmt: skip
 
 
 def _check_opposite_sides(surface: Surface) -> None:

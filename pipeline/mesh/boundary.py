@@ -88,3 +88,17 @@ def flattened(points: Floats, faces: Ints, patch: Ints, box: Box) -> Floats:
     for plane in planes(box):
         flat[np.unique(faces[patch == plane.patch]), plane.axis] = plane.value
     return flat
+
+
+def free_axes(points: Floats, box: Box, cyclic: bool = False) -> Floats:
+    """Tell along which axes each point may move without leaving the duct's planes: (n, 3) array of 0 and 1.
+
+    On cyclic sides none may move at all: the two sides would no longer fit each other.
+    """
+    free = np.ones_like(points)
+    for plane in planes(box):
+        there = points[:, plane.axis] == plane.value
+        free[there, plane.axis] = 0.0
+        if cyclic and plane.axis < 2:
+            free[there] = 0.0
+    return free

@@ -30,20 +30,20 @@ def fiber_distance(domain: FluidDomain, reach: Floats) -> "FiberDistance":
     # numba takes half a second to load, which no refused case file should cost
     from pipeline.geometry.fibers import FiberDistance
 
-    pieces = domain.pieces
+    pieces, lower, upper = domain.pieces, np.array(domain.box.lower), np.array(domain.box.upper)
     if len(pieces) == 0:
         # nobody knows the axes of a surface's fibers: one that lies out of reach of the duct stands for them
-        away = np.array(domain.box.upper)[None] + 1e3 * domain.mean_diameter * np.array([[1.0, 0, 0], [2.0, 0, 0]])
+        away = upper[None] + 1e3 * domain.mean_diameter * np.array([[1.0, 0, 0], [2.0, 0, 0]])
         none = np.zeros(1, np.int64)
         pieces = Pieces(away[:1], away[1:], none, np.zeros((1, 2), np.bool_))
         reach = 1e-3 * domain.radius
-    return FiberDistance.about(
-        pieces.start,
-        pieces.end,
-        domain.radius[pieces.fiber],
-        pieces.flat,
-        pieces.fiber,
-        reach[pieces.fiber],
-        np.array(domain.box.lower),
-        np.array(domain.box.upper),
-    )
+    start, end, fiber, flat = pieces.start, pieces.end, pieces.fiber, pieces.flat
+    if domain.cyclic:
+        # a fiber that passes a side closely is as near to the opposite one, though it does not meet it
+        shifts = [np.array([x, y, 0.0]) * (upper - lower) for x in (0, -1, 1) for y in (0, -1, 1)]
+        start, end = (np.concatenate([ends + shift for shift in shifts]) for ends in (start, end))
+        fiber, flat = np.tile(fiber, len(shifts)), np.tile(flat, (len(shifts), 1))
+        margin = (domain.radius + reach)[fiber, None]
+        near = ((np.minimum(start, end) < upper + margin) & (np.maximum(start, end) > lower - margin)).all(axis=1)
+        start, end, fiber, flat = start[near], end[near], fiber[near], flat[near]
+    return FiberDistance.about(start, end, domain.radius[fiber], flat, fiber, reach[fiber], lower, upper)

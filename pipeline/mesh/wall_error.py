@@ -46,7 +46,7 @@ def fidelity(mesh: FaceMesh, domain: FluidDomain) -> Fidelity:
     distance = fiber_distance(domain, _REACH * diameter)
     off, piece = distance.with_piece(middles.reshape(-1, 3))
     known = piece >= 0
-    fiber = np.where(known, domain.pieces.fiber[np.maximum(piece, 0)], -1)
+    fiber = np.where(known, distance.field[2][np.maximum(piece, 0)], -1)
     own = np.where(known, off / diameter[fiber], _REACH)
     away = np.abs(own)
     in_air = _axis_in_air(points, triangles, domain)

@@ -35,6 +35,8 @@ class FluidDomain:
         The mat's slab within it.
     pieces : Pieces
         The fibers that the surface was built about.
+    cyclic : bool
+        Whether opposite sides are one to the solver: the air goes on through each where it enters the other.
     """
 
     points: Floats
@@ -46,6 +48,7 @@ class FluidDomain:
     box: Box
     slab: Box
     pieces: Pieces
+    cyclic: bool = False
 
     def __post_init__(self) -> None:
         freeze(
@@ -77,3 +80,8 @@ class FluidDomain:
     def volume(self) -> float:
         """Volume of the air [m3]."""
         return enclosed_volume(self.points, self.triangles)
+
+    def volume_error(self, air: float) -> float:
+        """Relative error of the fibers' volume [-] where a mesh fills so much air [m3]; above 0 they are too thick."""
+        volume = self.volume
+        return (volume - air) / (self.box.volume - volume)

@@ -25,7 +25,9 @@ _EDGES = np.array([[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]])
 _ROUNDS = 20  # neighboring corners take turns; on real mats three rounds were the most
 
 
-def split_corners(points: Floats, tets: Ints, seam: Ints | None = None) -> tuple[Floats, Ints]:
+def split_corners(
+    points: Floats, tets: Ints, seam: Ints | None = None, keep_edges: bool = False
+) -> tuple[Floats, Ints]:
     """Split cells until none has more than one boundary face.
 
     Parameters
@@ -36,6 +38,8 @@ def split_corners(points: Floats, tets: Ints, seam: Ints | None = None) -> tuple
     seam : (k, 3) int array, optional
         Faces behind which the mesh goes on, each with ascending corners: they are no boundary, and stay whole. A corner
         whose edge lies on one stays too.
+    keep_edges : bool
+        Split cells about their centers alone: the boundary keeps its triangles, at the price of flatter cells.
 
     Returns
     -------
@@ -46,7 +50,7 @@ def split_corners(points: Floats, tets: Ints, seam: Ints | None = None) -> tuple
     for _ in range(_ROUNDS):
         faces, cell = true_boundary(tets, seam)
         on_boundary = np.bincount(cell, minlength=len(tets))
-        three = np.flatnonzero(on_boundary >= 3)
+        three = np.flatnonzero(on_boundary >= (2 if keep_edges else 3))
         two = np.flatnonzero(on_boundary == 2)
         if len(three):
             points, tets = _with_centers(points, tets, three)

@@ -4,13 +4,14 @@
 
 import numpy as np
 
+from pipeline.geometry.faces import compacted
 from pipeline.geometry.tets import volumes
-from pipeline.mesh.boundary import assign
+from pipeline.mesh.boundary import assign, free_axes
 from pipeline.mesh.distance import fiber_distance
 from pipeline.mesh.engines.flawed import FlawedMeshError
 from pipeline.mesh.engines.raw import RawMesh
 from pipeline.mesh.improve.fit import fitted
-from pipeline.mesh.improve.settle import Reaches, free_axes, settled
+from pipeline.mesh.improve.settle import Reaches, settled
 from pipeline.mesh.settings import TetmeshSettings
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
@@ -48,8 +49,8 @@ def finished(
     # numba takes half a second to load, which no refused case file should cost
     from pipeline.geometry.adjacency import boundary_of, neighbors
 
-    points, tets = used_points(raw.points, raw.tets)
-    raw_error = _volume_error(points, tets, domain)
+    points, tets = compacted(raw.points, raw.tets)
+    raw_error = domain.volume_error(float(volumes(points, tets).sum()))
     tell("mending the worst cells", 0.6)
     limits = np.array(domain.box.lower), np.array(domain.box.upper)
     distance = fiber_distance(domain, _REACH * domain.radius)
@@ -58,10 +59,10 @@ def finished(
     for _ in range(_FITS):
         points, tets, faulty, tips = settled(points, tets, domain, reaches)
         filled += tips
-        points, tets = used_points(points, tets)
+        points, tets = compacted(points, tets)
         faces, _ = boundary_of(tets, neighbors(tets))
         walls = faces[assign(points, faces, domain.box, tolerance=0.0) == domain.patches.index(FIBERS)]
-        points = fitted(points, tets, walls, free_axes(points, domain.box), distance, limits)
+        points = fitted(points, tets, walls, free_axes(points, domain.box, domain.cyclic), distance, limits)
     _check_volumes(points, tets, settings)
 
     faces, _ = boundary_of(tets, neighbors(tets))
@@ -72,7 +73,7 @@ def finished(
         points=len(points),
         cells=len(tets),
         fluid_volume=mesh.volume,
-        volume_error=_volume_error(points, tets, domain),
+        volume_error=domain.volume_error(float(volumes(points, tets).sum())),
         raw_volume_error=raw_error,
         filled_volume=filled / domain.volume,
         faulty_cells=faulty,
@@ -80,17 +81,6 @@ def finished(
         mesher_peak_memory=raw.peak_memory,
     )
     return mesh.face_mesh(), measures
-
-
-def used_points(points: Floats, tets: Ints) -> tuple[Floats, Ints]:
-    """Drop the points that no tetrahedron uses: points (k, 3), and the tets (m, 4) by their new numbers."""
-    used, renumbered = np.unique(tets, return_inverse=True)
-    return points[used], renumbered.reshape(-1, 4)
-
-
-def _volume_error(points: Floats, tets: Ints, domain: FluidDomain) -> float:
-    solid = domain.box.volume - domain.volume
-    return float((domain.volume - volumes(points, tets).sum()) / solid)
 
 
 def _check_patches(patch: Ints, domain: FluidDomain, settings: TetmeshSettings) -> None:

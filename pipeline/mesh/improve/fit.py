@@ -89,7 +89,7 @@ def fitted(
             stay[tets[doubtful[harmed]]] = True
             movable[stay] = 0.0
             # only the cells at these vertices change, and the faces of those that touch them
-            changed = stay[tets].any(axis=1)
+            changed = np.asarray(stay[tets].any(axis=1))
             beside = across[changed]
             changed[beside[beside >= 0]] = True
             doubtful = np.flatnonzero(changed)

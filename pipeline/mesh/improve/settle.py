@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from pipeline.geometry.box import Box
 from pipeline.geometry.tets import FACES, volumes
 from pipeline.geometry.triangles import area_vectors, vertex_sums
-from pipeline.mesh.boundary import assign, planes
+from pipeline.mesh.boundary import assign, free_axes
 from pipeline.mesh.improve.corners import split_corners, split_longest, true_boundary
 from pipeline.mesh.improve.crevices import in_crevice, largest_part
 from pipeline.nouns.arrays import Floats, Ints
@@ -99,7 +98,7 @@ def settled(points: Floats, tets: Ints, domain: FluidDomain, reaches: Reaches) -
         cell, side = np.nonzero((across >= 0) & near[:, None])
         out = ~near[across[cell, side]]
         seam = np.sort(np.take_along_axis(tets[cell[out]], FACES[side[out]], axis=1), axis=1)
-        # moves alone mend nearly all: what is filled or split afterwards is looked for around the few cells that are left
+        # moves alone mend nearly all: what is filled or split later is looked for around the few cells that are left
         rounds = _FILLINGS if turn else 1
         points, mended, tips = _settled_here(points, tets[near], seam, domain, reaches, rounds)
         tets = np.concatenate([tets[~near], mended])
@@ -123,7 +122,7 @@ def _settled_here(
     loose = np.empty(0, np.int64)
     limits = np.array(domain.box.lower), np.array(domain.box.upper)
     for filling in range(rounds):
-        points, tets = split_corners(points, tets, seam)
+        points, tets = split_corners(points, tets, seam, keep_edges=domain.cyclic)
         walls, at_wall = true_boundary(tets, seam)
         fibers = walls[assign(points, walls, domain.box, tolerance=0.0) == domain.patches.index(FIBERS)]
         leash = np.full(len(points), np.inf)
@@ -136,7 +135,14 @@ def _settled_here(
         # the cells behind the seam do not know what happens here
         leash[tets[_with_three(tets, fixed, len(points))]] = 0.0
         points, faulty = mended(
-            points, tets, free_axes(points, domain.box), leash, _SWEEPS, limits, wall_normals(points, fibers), slide
+            points,
+            tets,
+            free_axes(points, domain.box, domain.cyclic),
+            leash,
+            _SWEEPS,
+            limits,
+            wall_normals(points, fibers),
+            slide,
         )
         # a flat cell is worse than any number of merely bad ones
         count = int(faulty.sum()) + len(tets) * int((volumes(points, tets) <= 0.0).sum())
@@ -147,6 +153,12 @@ def _settled_here(
         stuck = filling >= _PATIENCE
         # away from the fibers nothing is a crevice: a filled cell at the inlet of a coarse mesh doubled a pressure drop
         crevice = in_crevice(tets, walls, at_wall, len(points), faulty, stuck) & at_fibers(tets, fibers, len(points))
+        if domain.cyclic:
+            # what were filled or split on one side would have no partner opposite
+            box = domain.box
+            at_side = ((points == box.lower) | (points == box.upper))[:, :2].any(axis=1)[tets].sum(axis=1)
+            crevice &= at_side < 1
+            faulty &= at_side < 2
         filled += float(volumes(points, tets[crevice]).sum())
         loose = np.union1d(loose, tets[crevice])
         tets, faulty = tets[~crevice], faulty[~crevice]
@@ -202,11 +214,3 @@ def at_fibers(tets: Ints, fibers: Ints, vertices: int) -> npt.NDArray[np.bool_]:
     on_fibers = np.zeros(vertices, dtype=bool)
     on_fibers[fibers] = True
     return np.asarray(on_fibers[tets].any(axis=1))
-
-
-def free_axes(points: Floats, box: Box) -> Floats:
-    """Tell along which axes each point may move without leaving the duct's planes: (n, 3) array of 0 and 1."""
-    free = np.ones_like(points)
-    for plane in planes(box):
-        free[points[:, plane.axis] == plane.value, plane.axis] = 0.0
-    return free

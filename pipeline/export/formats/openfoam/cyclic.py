@@ -72,5 +72,5 @@ def _images(mesh: FaceMesh, low: Ints, high: Ints, axis: int) -> Ints:
 def _refusal(low: str, high: str, why: str) -> StageError:
     return StageError(
         f"cyclic sides need the same triangles on {low} and {high}, which {why}; "
-        "TetWild meshes each side on its own: set enclosure.sides to symmetry"
+        "set tetmesh.engine to lattice, whose sides fit for a periodic mat, or enclosure.sides to symmetry"
     )

@@ -7,6 +7,7 @@ from scipy.spatial import cKDTree
 
 from pipeline.child_process import Limits
 from pipeline.geometry.box import Box
+from pipeline.geometry.faces import compacted
 from pipeline.geometry.tets import boundary
 from pipeline.geometry.triangles import area_vectors
 from pipeline.mesh.boundary import assign, flattened, planes
@@ -16,7 +17,6 @@ from pipeline.mesh.engines.ftetwild.engine import TetwildSettings
 from pipeline.mesh.engines.ftetwild.size_field import size_field
 from pipeline.mesh.engines.limits import memory_allowed
 from pipeline.mesh.engines.raw import RawMesh
-from pipeline.mesh.improve.finish import used_points
 from pipeline.mesh.settings import TetmeshSettings
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
@@ -56,7 +56,7 @@ def tetrahedralized(domain: FluidDomain, settings: TetmeshSettings, unit: float,
     envelope = own.envelope * 2.0 * float(domain.radius.min())
     raw = _run((domain.points - middle) / unit, domain, settings, tell)
     tell("finding the patches")
-    points, tets = used_points(raw.points * unit + middle, raw.tets)
+    points, tets = compacted(raw.points * unit + middle, raw.tets)
     faces, _ = boundary(tets)
     # two envelopes: the mesher bounds the distance to the surface, not the distance along the plane's normal
     patch = assign(points, faces, domain.box, tolerance=2.0 * envelope)

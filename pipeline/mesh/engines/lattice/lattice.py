@@ -82,7 +82,13 @@ def lattice_mesh(domain: FluidDomain, settings: TetmeshSettings, tell: Progress)
     tets = lattice_tetrahedra(tree, vertices, value)
 
     tell(f"cutting the fibers out of {len(tets)} tetrahedra", 0.4)
-    lattice = Lattice(points, plane, np.asarray(vertices.width * edge.max(), np.float64), tets, lower, upper)
+    # vertices opposite to each other on cyclic sides are one
+    ends[2] += 1
+    twins = vertices.places % ends if domain.cyclic else vertices.places
+    number = np.ravel_multi_index(tuple(twins.T), tuple((ends + 1).tolist()))
+    lattice = Lattice(
+        points, plane, np.asarray(vertices.width * edge.max(), np.float64), tets, lower, upper, number, domain.cyclic
+    )
     points, cells = _cut(lattice, value, distance)
     return RawMesh(points, cells, _LEASH, time.monotonic() - began, peak_memory())
 
@@ -111,7 +117,7 @@ def _cubes(domain: FluidDomain, settings: TetmeshSettings) -> tuple["Octree", Fl
     largest = domain.mean_diameter * max(settings.largest_edge, settings.edge)
     if settings.growth == 0.0:
         largest = float(wanted.min())
-    wrapped = np.zeros(3, dtype=bool)
+    wrapped = np.array([domain.cyclic, domain.cyclic, False])
     cubes = grid(upper - lower, wanted, (lengths * domain.radius)[there], _FINER, largest, wrapped)
     demand = Demand(
         table(pieces.start - lower, pieces.end - lower, domain.radius[pieces.fiber]),
@@ -140,6 +146,9 @@ class Lattice:
     tets : (m, 4) int array
     lower, upper : (3,) arrays [m]
         Corners of the duct.
+    number : (n,) int array
+        The same for vertices opposite to each other on cyclic sides, different for all others.
+    cyclic : bool
     """
 
     points: Floats
@@ -148,6 +157,8 @@ class Lattice:
     tets: Ints
     lower: Floats
     upper: Floats
+    number: Ints
+    cyclic: bool
 
 
 def _cut(lattice: Lattice, value: Floats, distance: "FiberDistance") -> tuple[Floats, Ints]:
@@ -170,14 +181,18 @@ def _cut(lattice: Lattice, value: Floats, distance: "FiberDistance") -> tuple[Fl
         back = np.unique(flat[on_surface[flat]])
         if not len(back):
             break
+        if lattice.cyclic:
+            back = np.flatnonzero(np.isin(lattice.number, lattice.number[back]))
         on_surface[back] = False
         places[back] = points[back]
     points = places
     side = np.where(on_surface, 0, np.where(value > 0.0, 1, -1)).astype(np.int8)
     edges, table = crossed_edges(tets, side)
     crossings = distance.crossings(points[edges[:, 0]], points[edges[:, 1]])
-    rank = np.empty(len(points), np.int64)
-    rank[np.argsort(value, kind="stable")] = np.arange(len(points))
+    rank = lattice.number
+    if not lattice.cyclic:
+        rank = np.empty(len(points), np.int64)
+        rank[np.argsort(value, kind="stable")] = np.arange(len(points))
     points = np.concatenate([points, crossings])
     ends = plane[edges[:, 0]], plane[edges[:, 1]]
     plane = np.concatenate([plane, np.where(ends[0] == ends[1], ends[0], np.int8(0))])
@@ -192,4 +207,48 @@ def _cut(lattice: Lattice, value: Floats, distance: "FiberDistance") -> tuple[Fl
     thick = volumes(points, tets[between]) > _THICK * width**3
     kept = np.zeros(len(tets), dtype=bool)
     kept[between[airy & thick]] = True
-    return points, in_air(points, tets, side, rank, table, kept)
+    if lattice.cyclic:
+        # a triangle on a side whose corners all lie on walls is the air's on one side and the fiber's on the other
+        doubtful = np.zeros(len(tets), dtype=bool)
+        for axis, end in itertools.product((0, 1), (-1, 1)):
+            doubtful |= ((lattice.plane[tets, axis] == end) & (side[tets] == 0)).sum(axis=1) == 3
+        tets, kept = tets[~doubtful], kept[~doubtful]
+    cells = in_air(points, tets, side, rank, table, kept)
+    if lattice.cyclic:
+        pairs = np.unique(lattice.number[edges], axis=0, return_inverse=True)[1].ravel()
+        number = np.concatenate([lattice.number, lattice.number.max() + 1 + pairs])
+        cells = _matching_parts(cells, number, plane)
+    return points, cells
+
+
+def _matching_parts(cells: Ints, number: Ints, plane: npt.NDArray[np.int8]) -> Ints:
+    """Drop what hangs on the largest part by no face, and what lies opposite to it on a cyclic side.
+
+    Parameters
+    ----------
+    cells : (m, 4) int array
+    number : (n,) int array
+        The same for vertices opposite to each other.
+    plane : (n, 3) int8 array
+
+    Returns
+    -------
+    (k, 4) int array
+    """
+    from pipeline.geometry.adjacency import boundary_of, neighbors
+    from pipeline.mesh.improve.crevices import largest_part
+
+    while True:
+        across = neighbors(cells)
+        whole = largest_part(across)
+        if whole.all():
+            return cells
+        faces, cell = boundary_of(cells, across)
+        at_side = np.zeros(len(faces), dtype=bool)
+        for axis, end in itertools.product((0, 1), (-1, 1)):
+            at_side |= (plane[faces, axis] == end).all(axis=1)
+        faces, cell = np.sort(number[faces[at_side]], axis=1), cell[at_side]
+        dropped = ~whole
+        lost = {tuple(face) for face in faces[dropped[cell]].tolist()}
+        dropped[cell[[tuple(face) in lost for face in faces.tolist()]]] = True
+        cells = cells[~dropped]

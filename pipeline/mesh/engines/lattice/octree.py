@@ -280,7 +280,21 @@ def _balanced(split: dict[int, Ints], counts: Ints, wrapped: Bools) -> dict[int,
             beside = np.unique(_keys(_inside(around, counts, level - 1, wrapped), counts))
             parents = _places(beside, counts) >> 1
             result[level] = _places(np.unique(_keys(np.concatenate([parents, split[level]]), counts)), counts)
+        result[level] = _mirrored(result[level], counts, level, wrapped)
     return result
+
+
+def _mirrored(places: Ints, counts: Ints, level: int, wrapped: Bools) -> Ints:
+    """Add to cubes at a side those at the opposite one, along axes that wrap."""
+    for axis in np.flatnonzero(wrapped):
+        last = (counts[axis] >> level) - 1
+        added = [places]
+        for here, there in ((0, last), (last, 0)):
+            image = places[places[:, axis] == here].copy()
+            image[:, axis] = there
+            added.append(image)
+        places = _places(np.unique(_keys(np.concatenate(added), counts)), counts) if last > 0 else places
+    return places
 
 
 def _inside(places: Ints, counts: Ints, level: int, wrapped: Bools) -> Ints:

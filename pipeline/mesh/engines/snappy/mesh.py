@@ -14,7 +14,7 @@ from pipeline.errors import StageError
 from pipeline.geometry.box import Box
 from pipeline.geometry.polyhedra import polygons
 from pipeline.geometry.triangles import area_vectors
-from pipeline.mesh.boundary import planes
+from pipeline.mesh.boundary import free_axes, planes
 from pipeline.mesh.engines.limits import memory_allowed
 from pipeline.mesh.engines.snappy.blind import without_blind_cells
 from pipeline.mesh.engines.snappy.case import write_case
@@ -22,7 +22,6 @@ from pipeline.mesh.engines.snappy.engine import SnappySettings
 from pipeline.mesh.engines.snappy.fit import fitted
 from pipeline.mesh.engines.snappy.running import run_case
 from pipeline.mesh.settings import TetmeshSettings
-from pipeline.nouns.arrays import Floats
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.mesh_measures import TetmeshMeasures
@@ -72,13 +71,13 @@ def snapped(
     mesh, faulty = without_blind_cells(mesh, FIBERS)
     filled = 1.0 - mesh.volume / raw.volume
     tell("restoring the fibers' volume")
-    mesh = fitted(mesh, FIBERS, _free_axes(mesh.points, domain.box), domain.volume)
+    mesh = fitted(mesh, FIBERS, free_axes(mesh.points, domain.box), domain.volume)
     measures = TetmeshMeasures(
         points=len(mesh.points),
         cells=mesh.cells,
         fluid_volume=mesh.volume,
-        volume_error=_volume_error(mesh, domain),
-        raw_volume_error=_volume_error(raw, domain),
+        volume_error=domain.volume_error(mesh.volume),
+        raw_volume_error=domain.volume_error(raw.volume),
         filled_volume=filled,
         faulty_cells=faulty,
         mesher_seconds=used.seconds,
@@ -114,14 +113,3 @@ def _check_planes(mesh: FaceMesh, domain: FluidDomain) -> None:
                 f"snappyHexMesh left the area of the patch {name} off by {error:+.2%} (allowed: {_PLANE_ERROR:.0%}); "
                 "make the mesh finer: lower tetmesh.edge"
             )
-
-
-def _volume_error(mesh: FaceMesh, domain: FluidDomain) -> float:
-    return float((domain.volume - mesh.volume) / (domain.box.volume - domain.volume))
-
-
-def _free_axes(points: Floats, box: Box) -> Floats:
-    free = np.ones_like(points)
-    for plane in planes(box):
-        free[points[:, plane.axis] == plane.value, plane.axis] = 0.0
-    return free
