@@ -342,7 +342,7 @@ def measure(
     pixel
         Length of a pixel: ``--pixel "25 nm"``; unless given, what the file says.
     bar
-        Length that the bar in the picture's strip stands for, ``--bar "10 um"``, instead of the pixel's.
+        Length that the bar in the picture's strip stands for, as "10 um", instead of the pixel's.
     window
         Part of the picture: left,top,right,bottom in pixels.
     case
