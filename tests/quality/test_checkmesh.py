@@ -130,3 +130,48 @@ def test_meshes_that_openfoam_wrote_for_others_are_the_same_mesh(tets: tuple[Pat
         for name, metric in ours.metrics.items():
             if name != "openness":
                 assert theirs.metrics[name].mean == pytest.approx(metric.mean, rel=2e-4, abs=1e-6), name
+
+
+FLAT = """
+FoamFile { version 2.0; format ascii; class dictionary; object blockMeshDict; }
+vertices ((0 0 0) (1 0 0) (1.3 1 0) (0.1 1 0) (0 0 0.1) (1 0 0.1) (1.3 1 0.1) (0.1 1 0.1));
+blocks (hex (0 1 2 3 4 5 6 7) (CELLS) simpleGrading (2 3 1));
+edges ();
+boundary ( lid { type wall; faces ((3 7 6 2)); } floor { type wall; faces ((1 5 4 0)); }
+    ends { type ENDS; faces ((0 4 7 3) (2 6 5 1)); } frontAndBack { type empty; faces ((0 3 2 1) (4 5 6 7)); } );
+"""
+WEDGE = """
+FoamFile { version 2.0; format ascii; class dictionary; object blockMeshDict; }
+vertices ((0 0 0) (1 0 0) (1 0.999048 -0.0436194) (0 0.999048 -0.0436194)
+    (1 0.999048 0.0436194) (0 0.999048 0.0436194));
+blocks (hex (0 1 2 3 0 1 4 5) (7 9 1) simpleGrading (1 2 1));
+edges ();
+boundary ( left { type patch; faces ((0 3 5 0)); } right { type patch; faces ((1 4 2 1)); }
+    rim { type wall; faces ((2 4 5 3)); } front { type wedge; faces ((0 1 4 5)); }
+    back { type wedge; faces ((0 3 2 1)); } axis { type empty; faces ((0 1 1 0)); } );
+"""
+
+
+@pytest.mark.parametrize(
+    "block",
+    [
+        FLAT.replace("CELLS", "8 6 1").replace("ENDS", "wall"),
+        # one row of cells between two pairs of empty patches: a mesh along a line
+        FLAT.replace("CELLS", "1 6 1").replace("ENDS", "empty").replace("1.3 1", "1 1").replace("0.1 1", "0 1"),
+        WEDGE,
+    ],
+    ids=["two dimensions", "one dimension", "axisymmetric"],
+)
+def test_flat_meshes_have_checkmeshs_determinants_and_aspect_ratios(
+    tets: tuple[Path, FaceMesh], block: str, tmp_path: Path
+) -> None:
+    case, _ = tets
+    shutil.rmtree(case / "0")
+    (case / "system/blockMeshDict").write_text(block)
+    foam(case, "blockMesh")
+    said, report = figures(foam(case, "checkMesh", "-allGeometry")), judge(read_openfoam(case))
+    for name in ("max_aspect_ratio", "min_determinant", "mean_determinant", "max_skewness", "min_volume_ratio"):
+        which, metric = name.split("_", 1)
+        ours = getattr(report.metrics[metric], which)
+        assert ours == pytest.approx(said[name], rel=1e-5, abs=1e-10), name
+    assert report.metrics["determinant"].over_limit == 0
