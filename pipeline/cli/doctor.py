@@ -15,10 +15,13 @@ from pathlib import Path
 
 import psutil
 
+from pipeline import child_process
 from pipeline.mesh.engines.snappy.running import PARALLEL, PROGRAMS
 from pipeline.openfoam.environment import INSTALL, environment
+from pipeline.scratch import scratch_folder
 
 _SOLVER = ("checkMesh", "simpleFoam")
+_TIME_LIMIT = 120.0  # seconds after which a program that was asked something says nothing any more
 _INSTALL_MPI = "on Debian: apt-get install openmpi-bin"
 _SPHERE = """
 import pyvista
@@ -79,12 +82,22 @@ def _openfoam() -> Finding:
     found = _programs("OpenFOAM", _SOLVER, "only `solve` needs it", INSTALL)
     if not found.fine:
         return found
-    answer = subprocess.run(
-        ["simpleFoam", "-help"], capture_output=True, text=True, env=environment(Path.cwd()), check=False, timeout=60
-    )
+    _, said = _run(["simpleFoam", "-help"], environment(Path.cwd()))
     # "Using: OpenFOAM-v2312 (2312) - visit www.openfoam.com", or with a name of its own before the parenthesis
-    version = re.search(r"Using:?\s+OpenFOAM\S*\s+\(([^)]+)\)", answer.stdout)
+    version = re.search(r"Using:?\s+OpenFOAM\S*\s+\(([^)]+)\)", said)
     return Finding("OpenFOAM", version[1] if version else "found", True, False)
+
+
+def _run(command: list[str], around: dict[str, str]) -> tuple[int | None, str]:
+    """Run a program and give its code, None where it does not end, and what it said."""
+    with scratch_folder("doctor") as folder:
+        log = folder / "log"
+        with child_process.started(command, folder, log, around, [folder]) as child:
+            try:
+                code = child.wait(_TIME_LIMIT)
+            except subprocess.TimeoutExpired:
+                code = None
+        return code, log.read_text(errors="replace")
 
 
 def _programs(name: str, programs: Sequence[str], purpose: str, advice: str) -> Finding:
@@ -98,14 +111,8 @@ def _opengl() -> Finding:
     from pipeline.report.views.render import rendering_environment
 
     # a process of its own: VTK ends the one that asks in vain
-    done = subprocess.run(
-        [sys.executable, "-P", "-c", _SPHERE],
-        env=rendering_environment(),
-        capture_output=True,
-        check=False,
-        timeout=120,
-    )
-    if done.returncode:
+    code, _ = _run([sys.executable, "-P", "-c", _SPHERE], rendering_environment())
+    if code != 0:
         return Finding(
             "OpenGL", "VTK draws nothing", False, False,
             "pages have no pictures without it; on Debian: apt-get install libegl1 libgl1-mesa-dri",
