@@ -3,7 +3,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import os
-import zipfile
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -17,6 +16,7 @@ from pipeline.capture.intervals import share_interval
 from pipeline.capture.langevin import Motion
 from pipeline.capture.starts import starts
 from pipeline.capture.trajectories import CAPTURED, TIMED_OUT, Duct, Fates, Pace, tracked
+from pipeline.line.store import DAMAGE, read_arrays
 
 BATCH = 500
 """Particles that are followed in one go: the work that a killed run loses at most, per core."""
@@ -107,13 +107,8 @@ def _batch(
     first: int, count: int, filter: Filter, motion: Motion, pace: Pace, seed: int, size: int, kept: Path | None
 ) -> Fates:
     path = kept / f"{size}_{first}_{count}.npz" if kept is not None else None
-    if path is not None and path.exists():
-        try:
-            with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
-                return Fates(**{name: file[name] for name in Fates._fields})
-        except (OSError, ValueError, KeyError, zipfile.BadZipFile):
-            # a write that was cut short
-            path.unlink()
+    if path is not None and path.exists() and (found := _kept(path, count)) is not None:
+        return found
     places = starts(first, count, seed, filter.duct, filter.cells, filter.fastest)
     fates = tracked(places, first, seed, size, motion, filter.duct, pace, filter.cells, filter.grid)
     if path is not None:
@@ -121,6 +116,17 @@ def _batch(
         np.savez(side, **fates._asdict())
         side.rename(path)
     return fates
+
+
+def _kept(path: Path, count: int) -> Fates | None:
+    """Read a batch of an earlier try; None where it is damaged."""
+    try:
+        found = read_arrays(path)
+        shapes = [found[name].shape for name in Fates._fields]
+    except DAMAGE:
+        return None
+    whole = shapes == [(count, 3) if name == "place" else (count,) for name in Fates._fields]
+    return Fates(**{name: found[name] for name in Fates._fields}) if whole else None
 
 
 def joined(parts: list[Fates]) -> Fates:

@@ -2,7 +2,6 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,7 @@ from pipeline.capture.cells import Cells, cells_of
 from pipeline.capture.openfoam_flow import openfoam_cells
 from pipeline.errors import StageError
 from pipeline.line import store
+from pipeline.line.places import kept_folder, remove
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.fibers import Mat
@@ -24,9 +24,6 @@ from pipeline.progress import Progress
 if TYPE_CHECKING:
     from pipeline.line.results import Results
     from pipeline.line.stage import Counts
-
-CAPTURING = ".capturing"
-"""Folder of a run that holds finished batches of particles until all of them are done."""
 
 
 def make(results: "Results", into: Path, progress: Progress) -> "Counts":
@@ -48,16 +45,15 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
             fiber_diameter=comparison.fiber_diameter,
         ),
     )
-    # beside the stage and not in it: a killed run goes on from there, unless something changed
-    whole = results.folder / CAPTURING
+    # beside the stage and not in it: a killed run goes on from its finished batches, unless something changed
+    whole = kept_folder(results.folder, "capture")
     key = store.digest([case.capture.model_dump(mode="json"), case.flow.model_dump(mode="json"), source])
     kept = whole / key[:16]
     if whole.exists() and not kept.exists():
-        shutil.rmtree(whole)
+        remove(whole)
     found, caught = capture(medium, case.capture, case.flow, progress, kept)
     store.write_json(into / "capture.json", found)
     write_caught(caught, into / "captured.vtp")
-    shutil.rmtree(whole, ignore_errors=True)
     worst = found.most_penetrating["cfd"]
     return {
         "particles": sum(found.released),

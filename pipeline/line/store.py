@@ -30,11 +30,11 @@ CASE = "case.json"
 
 _LARGEST_JSON = 500_000_000  # bytes; the measures of a million fibers take a fifth of that
 _LONGEST_REASON = 2000  # characters of what a library says about a damaged file
-# what numpy, zipfile, json, pydantic and the nouns raise at content that is not what `save` or `write_json` wrote
-_DAMAGE = (
+DAMAGE = (
     ArithmeticError, EOFError, LookupError, MemoryError, OSError, RuntimeError, TypeError, ValueError, struct.error,
     tokenize.TokenError, zipfile.BadZipFile,
 )  # fmt: skip
+"""What numpy, zipfile, json, pydantic and the nouns raise at content that is not what `save` or `write_json` wrote."""
 
 
 def digest(content: object) -> str:
@@ -96,7 +96,7 @@ def load_json(kind: type[T], path: Path) -> T:
     try:
         read_json(path)
         return TypeAdapter(kind).validate_json(read_bytes(path, _LARGEST_JSON, links=False))
-    except _DAMAGE as problem:
+    except DAMAGE as problem:
         raise _unreadable(path, problem) from problem
 
 
@@ -147,7 +147,7 @@ def load(kind: type[T], path: Path) -> T:
         found = read_arrays(path)
         rest = json.loads(str(found.pop("rest")), parse_constant=_refused, parse_float=_finite)
         return _made(kind, found, rest)
-    except _DAMAGE as problem:
+    except DAMAGE as problem:
         raise _unreadable(path, problem) from problem
 
 

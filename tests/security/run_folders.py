@@ -78,6 +78,8 @@ def nouns() -> dict[str, tuple[type, bytes]]:
     for name, thing in things.items():
         store.save(thing, folder() / name)
         found[name] = (type(thing), (folder() / name).read_bytes())
+        # what is asked first compiles for a while, which is no fault of an input's
+        _ASKED[type(thing)](thing)
     return found
 
 
