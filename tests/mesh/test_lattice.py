@@ -271,5 +271,5 @@ def test_random_mats_keep_every_limit(contact: str, seed: int) -> None:
 
 def test_a_lattice_beyond_memory_is_refused_with_what_to_do() -> None:
     domain, _ = across(0.6)
-    with pytest.raises(StageError, match=r"more than .* cubes, and the limit of memory allows 33; raise tetmesh.edge"):
+    with pytest.raises(StageError, match=r"more than .* cubes, and the limit of memory allows 12; raise tetmesh.edge"):
         fill(domain, TetmeshSettings(engine="lattice", edge=0.6, memory_limit=1e5))
