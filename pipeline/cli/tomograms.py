@@ -2,6 +2,7 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import dataclasses
 import json
 import sys
 from pathlib import Path
@@ -16,8 +17,11 @@ from pipeline.geometry.triangles import area_vectors, enclosed_volume
 from pipeline.line.places import disk_trouble_explained
 from pipeline.progress import Progress
 from pipeline.tomography.contour import surface_of
+from pipeline.tomography.pores import pores_of
 from pipeline.tomography.read import MEMORY_PER_VOXEL, read_voxels
 from pipeline.tomography.solid import segment
+
+_PORES = (("median", "median"), ("largest", "largest"), ("bubble point", "bubble_point"))
 
 
 def surface_of_tomogram(
@@ -58,13 +62,14 @@ def surface_of_tomogram(
         "size": size.tolist(),
         "threshold": found.threshold,
         "islands": found.islands,
-        "pores": found.pores,
+        "closed_pores": found.pores,
         "solidity": {
             "voxels": found.solidity,
             "surface": enclosed_volume(points, triangles) / float(np.prod(size)),
         },
         "triangles": len(triangles),
         "mean_diameter": _mean_diameter(points, triangles, size),
+        "pores": dataclasses.asdict(pores_of(found.solid, edge)),
         "surface": str(into),
     }
     with disk_trouble_explained(into):
@@ -129,10 +134,13 @@ def _show(told: dict[str, Any], into: Path, case: Path | None) -> None:
     size = " x ".join(f"{1e6 * length:.4g}" for length in told["size"])
     share = told["solidity"]
     show(f"window          {size} um, {' x '.join(map(str, told['voxels']))} voxels")
-    left_out = f"{told['islands']} voxels of islands and {told['pores']} of pores left out"
+    left_out = f"{told['islands']} voxels of islands and {told['closed_pores']} of pores left out"
     show(f"threshold       {told['threshold']:g}; {left_out}")
     show(f"solidity        {share['voxels']:.3%} of the voxels, {share['surface']:.3%} within the surface")
     show(f"mean diameter   {1e6 * told['mean_diameter']:.4g} um, from volume over surface")
+    pores = told["pores"]
+    spheres = ", ".join(f"{name} {1e6 * pores[key]:.4g} um" for name, key in _PORES)
+    show(f"pores           {spheres}, by spheres that fit in")
     show(f"surface         {into}, {told['triangles']:,} triangles, in um")
     if case is not None:
         show(f"run it: fibertwin run {case}")
