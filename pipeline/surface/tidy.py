@@ -231,7 +231,7 @@ def _flip(points: Floats, triangles: Ints, label: Ints, sides: Ints, least: Floa
 
 def _cube(points: Floats, triangles: Ints, edge: float) -> float:
     """Size of cubes as large as a usual triangle, but no more than about eight of them per triangle."""
-    extent = np.maximum(np.ptp(points[triangles].reshape(-1, 3), axis=0), edge)
+    extent = np.maximum(np.ptp(points[triangles[:, 0]], axis=0), edge)
     return max(edge, math.cbrt(float(np.prod(extent)) / (8.0 * len(triangles))))
 
 
