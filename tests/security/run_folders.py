@@ -123,6 +123,7 @@ def odd_arrays(draw: st.DataObject) -> None:
 
 
 def _other(draw: st.DataObject, array: Any) -> Any:
+    array = np.atleast_1d(array)
     match draw.draw(st.sampled_from(["value", "type", "flat", "deeper", "cut", "doubled", "empty", "scalar"])):
         case "value":
             changed = array.copy()
