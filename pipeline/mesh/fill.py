@@ -14,7 +14,7 @@ from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.progress import NOTE, Progress, silent
 
-_LONG = 180.0  # seconds of processor time that are said before they are spent
+_LONG = 120.0  # seconds of processor time that are said before they are spent
 
 
 def fill(

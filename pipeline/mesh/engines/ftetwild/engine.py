@@ -55,12 +55,12 @@ def _mesh(
 
 
 def _estimate(slender: float, settings: "TetmeshSettings") -> Estimate:
-    # measured on the smoke case and, at edges of 0.6 and 1.0, on the default: docs/meshing.md. The surface's triangles,
-    # some 46 per diameter of length, cost more than the cells do.
+    # measured on the smoke case, the default at edges of 0.6 and 1.0, and on figure10_corner at 1.0 (docs/meshing.md);
+    # the surface's triangles, some 46 per diameter of length, cost more than cells, and time grows faster than both
     field = slender * field_cells(settings)
-    return Estimate(
-        76.0 * slender + 0.6 * field, 1.5e8 + 4.5e5 * slender + 500.0 * field, 1.0 + 0.04 * slender + 2.1e-4 * field
-    )
+    slower = 1.0 + slender / 1500.0
+    seconds = 1.0 + slower * (0.035 * slender + 1.9e-4 * field)
+    return Estimate(76.0 * slender + 0.6 * field, 2.5e8 + 1e5 * slender + 300.0 * field, seconds)
 
 
 TETWILD = Engine(
