@@ -24,11 +24,12 @@ from pipeline.capture.langevin import Motion
 from pipeline.capture.particles import motion_of
 from pipeline.capture.settings import PARTICLES, CaptureSettings, Mechanism
 from pipeline.capture.size_curve import most_penetrating_size
+from pipeline.capture.splitting import split_penetration
 from pipeline.capture.starts import fastest_inflow
 from pipeline.capture.trajectories import CAPTURED, PASSED, TIMED_OUT, Duct, Fates, Pace
 from pipeline.geometry.box import Box
 from pipeline.nouns.arrays import Floats, Ints
-from pipeline.nouns.capture import Capture, DepthProfile, MostPenetratingSize
+from pipeline.nouns.capture import Capture, DepthProfile, MostPenetratingSize, RarePenetration
 from pipeline.nouns.fibers import Mat, Pieces
 from pipeline.progress import Progress, silent
 
@@ -36,6 +37,10 @@ _TRANSITS = 100.0  # a particle is given up after so many times that the air tak
 _STEPS = 1_000_000
 _SLICES = 20
 _PATHS = 2000
+_COUNTED = 50  # particles that passed, from which the count is left as it is
+_SURVIVORS = 4000  # that start from each layer
+_MOST_LAYERS = 40
+_FORGETS = 0.02  # of a fiber's diameter: the farthest a particle may coast that starts anew with the air's velocity
 _MOST_CELLS = 100_000  # for the concentration, which splits each in eight
 _RESOLVED = 0.5  # of a cell: the thinnest layer of diffusion that is tried
 _TRUSTED = 0.1  # relative error of the capture depth up to which the concentration's answer is given
@@ -135,6 +140,7 @@ class _Size:
     sieved: int
     alone: dict[Mechanism, float]
     diffused: float | None  # efficiency by the concentration
+    rare: RarePenetration | None
 
 
 def _size(
@@ -160,7 +166,35 @@ def _size(
         some = _follow(filter, diameter, (mechanism,), number, fewer, medium, settings, air, tell, name, kept)
         alone[mechanism] = float((some.outcome == CAPTURED).mean())
     diffused = _diffused(filter, diameter, medium, settings, air, tell, at)
-    return _Size(diameter, fates, fiber, sieved, alone, diffused)
+    rare = _rare(filter, diameter, fates, medium, settings, air, tell, at)
+    return _Size(diameter, fates, fiber, sieved, alone, diffused, rare)
+
+
+def _rare(
+    filter: Filter, diameter: float, fates: Fates, medium: Medium, settings: CaptureSettings, air: FlowSettings,
+    tell: Progress, at: str,
+) -> RarePenetration | None:  # fmt: skip
+    """Penetration by layers where it is too small to count."""
+    motion = _motion(diameter, settings.mechanisms, settings, air)
+    thick = 2.0 * float(medium.mat.radius.mean())
+    passed, height = int((fates.outcome == PASSED).sum()), np.sort(fates.place[fates.outcome == CAPTURED, 2])
+    # few particles in all tell nothing of a small share
+    if passed >= _COUNTED or len(height) < max(10 * passed, _COUNTED):
+        return None
+    if motion.relaxation * air.face_velocity > _FORGETS * thick:
+        return None
+    bottom, top = medium.mat.slab.lower[2], medium.mat.slab.upper[2]
+    # how the survivors thin out with depth, as far as there are some to tell by
+    known = max(len(fates.outcome) - _COUNTED, 1)
+    reached = float(np.clip(height[min(known, len(height)) - 1], bottom + 0.02 * (top - bottom), top))
+    depth = np.log(len(fates.outcome) / (len(fates.outcome) - min(known, len(height)) + 1.0))
+    layers = int(np.clip(np.ceil(depth * (top - bottom) / (reached - bottom)), 2, _MOST_LAYERS))
+    tell(f"{at}: penetration by {layers} layers")
+    planes = np.append(np.linspace(bottom, top, layers + 1)[1:-1], medium.box.upper[2])
+    pace = pace_of(
+        float(medium.mat.radius.min()), motion.diffusivity > 0.0, _TRANSITS * medium.box.size[2] / air.face_velocity
+    )
+    return split_penetration(filter, motion, pace, settings.seed, min(len(fates.outcome), _SURVIVORS), planes)
 
 
 def _diffused(
@@ -215,11 +249,7 @@ def _follow(
     filter: Filter, diameter: float, mechanisms: tuple[Mechanism, ...], number: int, count: int | None, medium: Medium,
     settings: CaptureSettings, air: FlowSettings, tell: Progress, at: str, kept: Path | None,
 ) -> Fates:  # fmt: skip
-    model = preset(air.preset)
-    motion = motion_of(
-        diameter, settings.density or air.particle_density, air.flow(), model, mechanisms,
-        settings.gravity or model.gravity,
-    )  # fmt: skip
+    motion = _motion(diameter, mechanisms, settings, air)
     crossing = medium.box.size[2] / air.face_velocity
     pace = pace_of(float(medium.mat.radius.min()), motion.diffusivity > 0.0, _TRANSITS * crossing)
     place = None
@@ -236,6 +266,11 @@ def _follow(
         )
     assert fates is not None  # there is at least one particle
     return fates
+
+
+def _motion(diameter: float, mechanisms: tuple[Mechanism, ...], settings: CaptureSettings, air: FlowSettings) -> Motion:
+    model, density = preset(air.preset), settings.density or air.particle_density
+    return motion_of(diameter, density, air.flow(), model, mechanisms, settings.gravity or model.gravity)
 
 
 def pace_of(radius: float, diffuses: bool, time: float) -> Pace:
@@ -266,10 +301,13 @@ def _summary(sizes: list[_Size], stray: float, medium: Medium, settings: Capture
     bounds = [share_interval(*map(int, counts)) for counts in zip(caught, released, lost, strict=True)]
     air = air.model_copy(update={"particle_density": settings.density or air.particle_density})
     # a size that nothing passed has no depth, only a least one
-    depth = [-np.log1p(-share) if share < 1.0 else None for share in efficiency]
+    depth = [
+        -np.log(size.rare.penetration) if size.rare else -np.log1p(-share) if share < 1.0 else None
+        for size, share in zip(sizes, efficiency, strict=True)
+    ]
     per_depth = float(depth_of(medium.model, 1.0))
     flow = most_penetrating_size(diameter, caught, released, settings.seed)
-    worst = 1.0 - min(low for low, _ in bounds)
+    worst = max(size.rare.high if size.rare else 1.0 - low for size, (low, _) in zip(sizes, bounds, strict=True))
     groups = {name: classes.particulate_efficiency(diameter, efficiency, name) for name in classes.ISO_16890}
     return Capture(
         particle_diameter=tuple(diameter.tolist()),
@@ -287,6 +325,7 @@ def _summary(sizes: list[_Size], stray: float, medium: Medium, settings: Capture
         by_mechanism={name: tuple(size.alone[name] for size in sizes) for name in settings.mechanisms},
         first_row=_first_row(sizes, medium, released),
         concentration=tuple(size.diffused for size in sizes),
+        rare_penetration=tuple(size.rare for size in sizes),
         residence_time=tuple(_mean(size.fates.time[size.fates.outcome == PASSED]) for size in sizes),
         figure_of_merit=tuple(
             None if each is None else float(figure_of_merit(each, medium.pressure_drop)) for each in depth

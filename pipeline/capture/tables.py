@@ -21,12 +21,15 @@ def capture_tables(capture: Capture) -> tuple[Table, ...]:
     """Lay out efficiency over particle size, the worst size, and the classes that follow."""
     rows = []
     for k, diameter in enumerate(capture.particle_diameter):
-        single = capture.fiber_efficiency[k]
+        single, rare = capture.fiber_efficiency[k], capture.rare_penetration[k]
+        passed = share(capture.penetration[k])
+        if rare is not None:
+            passed = f"{rare.penetration:.2g} ({rare.low:.2g} to {rare.high:.2g})"
         rows.append((
             size(diameter),
             share(capture.efficiency[k]),
             f"{share(capture.low[k])} to {share(capture.high[k])}",
-            share(capture.penetration[k]),
+            passed,
             "-" if single is None else f"{single:.3g}",
             share(capture.single_fiber[k]),
             f"{capture.released[k]:,}",

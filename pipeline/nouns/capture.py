@@ -30,6 +30,23 @@ class MostPenetratingSize:
 
 
 @dataclass(frozen=True, slots=True)
+class RarePenetration:
+    """A penetration too small to count, as the product of what passes layer after layer.
+
+    Parameters
+    ----------
+    penetration, low, high : float [-]
+        With its 95 % interval.
+    layers : int
+    """
+
+    penetration: float
+    low: float
+    high: float
+    layers: int
+
+
+@dataclass(frozen=True, slots=True)
 class DepthProfile:
     """How deep particles stick.
 
@@ -74,6 +91,9 @@ class Capture:
     concentration : tuple of float or None [-]
         The filter's efficiency from convection and diffusion of the concentration (particles without inertia and
         weight); None where it was not solved for.
+    rare_penetration : tuple of RarePenetration or None
+        Where fewer than 50 particles passed: the penetration by layers; None elsewhere, and for particles whose inertia
+        carries them from layer to layer.
     residence_time : tuple of float or None [s]
         Mean from inlet to outlet of those that passed; None where none did.
     figure_of_merit : tuple of float or None [1/Pa]
@@ -114,6 +134,7 @@ class Capture:
     by_mechanism: dict[str, tuple[float, ...]]
     first_row: tuple[float, ...] | None
     concentration: tuple[float | None, ...]
+    rare_penetration: tuple[RarePenetration | None, ...]
     residence_time: tuple[float | None, ...]
     figure_of_merit: tuple[float | None, ...]
     pressure_drop: float
