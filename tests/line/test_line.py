@@ -22,6 +22,7 @@ from pipeline.line.run import Run, run
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.nouns.patches import FIBERS, PATCHES
 from pipeline.nouns.quality import QualityReport
 from pipeline.solve.settings import SolveSettings
@@ -68,8 +69,11 @@ def test_volume_is_kept_from_the_surface_to_the_mesh(smoke: Run) -> None:
     domain, mesh = smoke.read(FluidDomain), smoke.read(FaceMesh)
     solid = domain.box.volume - domain.volume
     assert mesh.volume == pytest.approx(domain.volume, abs=smoke.case.tetmesh.volume_error * solid)
-    # what the fitting is for: a hundredth of what the envelope cost
-    assert mesh.volume == pytest.approx(domain.volume, abs=2e-4 * solid)
+    # no wall is moved for the volume's sake: air that is bridged where fibers meet is a percent of the fibers
+    assert mesh.volume == pytest.approx(domain.volume, abs=0.01 * solid)
+    fidelity = smoke.read(TetmeshMeasures).fidelity
+    assert fidelity is not None
+    assert np.mean(np.abs(fidelity.radius_error)) < 0.01
     comparison = smoke.read(Comparison)
     assert comparison.solidity["mesh"] == pytest.approx(comparison.solidity["surface"], rel=0.01)
     assert comparison.solidity["nominal"] > comparison.solidity["surface"]  # overlaps are counted twice there
