@@ -24,7 +24,7 @@ from pipeline.solve.stokes.passage import refuse_blocked
 
 MOST_REYNOLDS = 0.5
 """Fiber Reynolds number up to which the drag of creeping flow is right within .5 %."""
-_NODE_MEMORY = 2600  # bytes per node that a flow takes at its peak, measured on 38,000 to 150,000 cells
+_NODE_MEMORY = 2600  # bytes per node at the peak, by the sizes of its arrays at 38,000 to 150,000 cells
 _MEMORY_SHARE = 0.85
 _OTHER = {"slip": "no_slip", "no_slip": "slip"}
 
