@@ -2,8 +2,6 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-import itertools
-
 import numpy as np
 
 from pipeline.geometry.box import Box
@@ -14,6 +12,7 @@ from pipeline.nouns.arrays import Floats
 from pipeline.nouns.fibers import Pieces
 from pipeline.nouns.mesh import FaceMesh, Patch, TetMesh
 from pipeline.nouns.patches import FIBERS, PATCHES
+from validation.closed_flows import brick_tets
 
 NO_PIECES = Pieces(np.empty((0, 3)), np.empty((0, 3)), np.empty(0, np.int64), np.empty((0, 2), bool))
 """Of a shape that no fiber made."""
@@ -25,21 +24,6 @@ def boundary_of(tets: Ints) -> Ints:
     _, index, count = np.unique(np.sort(triangles, axis=1), axis=0, return_index=True, return_counts=True)
     once: Ints = triangles[index[count == 1]]
     return once
-
-
-def kuhn_tets(cells: tuple[int, int, int]) -> Ints:
-    """Six positive tetrahedra in each cube of a grid of points in C order."""
-    shape = tuple(n + 1 for n in cells)
-    corner = np.stack(np.meshgrid(*(np.arange(n) for n in cells), indexing="ij"), axis=-1).reshape(-1, 1, 3)
-    result = []
-    for axes in itertools.permutations(range(3)):
-        path = np.zeros((4, 3), np.int64)
-        for step, axis in enumerate(axes):
-            path[step + 1 :, axis] += 1
-        if np.linalg.det(path[1:].astype(float)) < 0:
-            path = path[[0, 1, 3, 2]]
-        result.append(np.ravel_multi_index(np.moveaxis(corner + path, -1, 0), shape))
-    return np.concatenate(result)
 
 
 def duct(
@@ -55,7 +39,7 @@ def duct(
     """
     axes = [np.linspace(0, length, n + 1) for length, n in zip(size, cells, strict=True)]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    tets = kuhn_tets(cells)
+    tets = brick_tets(cells)
     spacing = np.array(size) / cells
     if hole:
         middle = points[tets].mean(axis=1)

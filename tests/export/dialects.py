@@ -19,7 +19,7 @@ from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.openfoam.foam_file import Encoding
 from tests.openfoam import AIR
-from tests.sample_meshes import kuhn_tets
+from validation.closed_flows import brick_tets
 
 Random = np.random.Generator
 ORDER = Order(ExportSettings(), AIR, "symmetry")
@@ -62,7 +62,7 @@ def block(draw: Random, kinds: tuple[str, ...] = ("tetra", "wedge", "hexahedron"
     base = [(0, 0), (1, 0), (1, 1), (0, 1)]
     hexahedra = np.column_stack([corner(i, j, k) for k in (0, 1) for i, j in base])
     if kind == "tetra":
-        cells = kuhn_tets((int(shape[0]), int(shape[1]), int(shape[2])))
+        cells = brick_tets((int(shape[0]), int(shape[1]), int(shape[2])))
         faces = cells[:, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]].reshape(-1, 3)
     elif kind == "wedge":
         cells = np.concatenate([hexahedra[:, [0, 1, 2, 4, 5, 6]], hexahedra[:, [0, 2, 3, 4, 6, 7]]])
