@@ -118,7 +118,7 @@ def rung_case(case: Case, solidity: float, factor: float, slip: float = 0.0) -> 
     return case.model_copy(update=changes)
 
 
-def climb(case: Case, folder: Path, tell: Progress = silent) -> Rung:
+def climb(case: Case, folder: Path, progress: Progress = silent) -> Rung:
     """Run a case that `rung_case` made, and read its drag.
 
     Raises
@@ -128,7 +128,7 @@ def climb(case: Case, folder: Path, tell: Progress = silent) -> Rung:
     """
     mat, flow = case.mat, case.flow.flow()
     assert isinstance(mat, ArraySettings)
-    run(case, folder, "solve", progress=tell, without=frozenset({"report"}))
+    run(case, folder, "solve", progress=progress, without=frozenset({"report"}))
     this = Run(case, folder)
     solution, measures = this.read(Solution), this.read(TetmeshMeasures)
     length = this.read(Mat).slab.size[1]
@@ -162,7 +162,7 @@ def climb(case: Case, folder: Path, tell: Progress = silent) -> Rung:
 
 
 def ladder(
-    case: Case, folder: Path, solidities: tuple[float, ...] = SOLIDITIES, slip: float = 0.0, tell: Progress = silent
+    case: Case, folder: Path, solidities: tuple[float, ...] = SOLIDITIES, slip: float = 0.0, progress: Progress = silent
 ) -> list[Rung]:
     """Climb three rungs at each solidity, coarse to fine.
 
@@ -176,7 +176,7 @@ def ladder(
                 place, without = place.with_name(f"{place.name}_slip"), place
                 if without.is_dir() and not place.exists():
                     shutil.copytree(without, place)
-            rungs.append(climb(rung_case(case, solidity, factor, slip), place, tell))
+            rungs.append(climb(rung_case(case, solidity, factor, slip), place, progress))
     return rungs
 
 

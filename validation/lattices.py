@@ -138,7 +138,7 @@ def lattice_case(lattice: str, solidity: float, edge: float, mesher: str, file: 
 
 
 def climb_lattice(
-    lattice: str, solidity: float, edge: float, mesher: str, folder: Path, tell: Progress = silent
+    lattice: str, solidity: float, edge: float, mesher: str, folder: Path, progress: Progress = silent
 ) -> LatticeRung:
     """Run a lattice through the line, and read the permeability of its inner cell.
 
@@ -152,7 +152,7 @@ def climb_lattice(
     file = folder / "fibers.csv"
     file.write_text(text, encoding="ascii")
     case = lattice_case(lattice, solidity, edge, mesher, file)
-    run(case, folder / "run", "solve", progress=tell, without=frozenset({"report", "export"}))
+    run(case, folder / "run", "solve", progress=progress, without=frozenset({"report", "export"}))
     results = Run(case, folder / "run")
     solution, measures, flow = results.read(Solution), results.read(TetmeshMeasures), case.flow.flow()
     drag = sum(solution.drag_per_fiber[fiber] for fiber in cells[_CELLS // 2])
@@ -178,10 +178,10 @@ def climb_lattice(
     )
 
 
-def lattices(folder: Path, mesher: str, tell: Progress = silent) -> list[LatticeRung]:
+def lattices(folder: Path, mesher: str, progress: Progress = silent) -> list[LatticeRung]:
     """Climb three rungs of every lattice, coarse to fine."""
     return [
-        climb_lattice(lattice, solidity, edge, mesher, folder / mesher / f"{lattice}_{solidity:g}_{level}", tell)
+        climb_lattice(lattice, solidity, edge, mesher, folder / mesher / f"{lattice}_{solidity:g}_{level}", progress)
         for lattice, exact in EXACT.items()
         for solidity in exact
         for level, edge in enumerate(EDGES)

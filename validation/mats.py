@@ -83,7 +83,7 @@ def mat_case(case: Case, side: float, factor: float, seed: int) -> Case:
     )
 
 
-def solved(case: Case, folder: Path, tell: Progress = silent) -> MatRun:
+def solved(case: Case, folder: Path, progress: Progress = silent) -> MatRun:
     """Run a case of a layered mat and collect what the studies compare.
 
     Raises
@@ -92,7 +92,7 @@ def solved(case: Case, folder: Path, tell: Progress = silent) -> MatRun:
         If a stage fails.
     """
     assert isinstance(case.mat, LayeredSettings)
-    run(case, folder, "solve", progress=tell, without=frozenset({"report"}))
+    run(case, folder, "solve", progress=progress, without=frozenset({"report"}))
     this = Run(case, folder)
     solution, comparison, measures = this.read(Solution), this.read(Comparison), this.read(TetmeshMeasures)
     return MatRun(
@@ -114,7 +114,7 @@ def solved(case: Case, folder: Path, tell: Progress = silent) -> MatRun:
     )
 
 
-def mat_runs(case: Case, folder: Path, tell: Progress = silent) -> list[MatRun]:
+def mat_runs(case: Case, folder: Path, progress: Progress = silent) -> list[MatRun]:
     """Run both studies: the case's box on three meshes, and boxes of other sides on the case's mesh."""
     assert isinstance(case.mat, LayeredSettings)
     pairs = [(case.mat.side, factor) for factor in FACTORS]
@@ -123,7 +123,7 @@ def mat_runs(case: Case, folder: Path, tell: Progress = silent) -> list[MatRun]:
     for side, factor in pairs:
         for seed in SEEDS:
             place = folder / f"side_{1e6 * side:g}_spacing_{factor:g}_seed_{seed}"
-            runs.append(solved(mat_case(case, side, factor, seed), place, tell))
+            runs.append(solved(mat_case(case, side, factor, seed), place, progress))
     return runs
 
 

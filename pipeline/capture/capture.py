@@ -100,7 +100,7 @@ class Medium:
 
 
 def capture(
-    medium: Medium, settings: CaptureSettings, air: FlowSettings, tell: Progress = silent, kept: Path | None = None
+    medium: Medium, settings: CaptureSettings, air: FlowSettings, progress: Progress = silent, kept: Path | None = None
 ) -> tuple[Capture, Caught]:
     """Count what a filter catches of particles of each size.
 
@@ -109,7 +109,7 @@ def capture(
     medium : Medium
     settings : CaptureSettings
     air : FlowSettings
-    tell : Progress
+    progress : Progress
     kept : Path, optional
         Folder for finished batches, from which a killed run goes on.
 
@@ -119,7 +119,7 @@ def capture(
     Caught
         In the order of sizes and particles.
     """
-    sizes = [_size(number, medium, settings, air, tell, kept) for number in range(len(settings.diameters()))]
+    sizes = [_size(number, medium, settings, air, progress, kept) for number in range(len(settings.diameters()))]
     stray = _stray(medium, settings, air)
     return _summary(sizes, stray, medium, settings, air), _where(sizes, medium)
 
@@ -144,14 +144,14 @@ class _Size:
 
 
 def _size(
-    number: int, medium: Medium, settings: CaptureSettings, air: FlowSettings, tell: Progress, kept: Path | None
+    number: int, medium: Medium, settings: CaptureSettings, air: FlowSettings, progress: Progress, kept: Path | None
 ) -> _Size:
     diameters = settings.diameters()
     diameter = diameters[number]
     filter, of_piece = filter_for(medium, diameter)
     at = f"capture: {diameter * 1e9:.4g} nm, size {number + 1} of {len(diameters)}"
     count = settings.particles or (None if settings.half_width else PARTICLES)
-    fates = _follow(filter, diameter, settings.mechanisms, number, count, medium, settings, air, tell, at, kept)
+    fates = _follow(filter, diameter, settings.mechanisms, number, count, medium, settings, air, progress, at, kept)
     caught = fates.outcome == CAPTURED
     fiber = np.where(caught, of_piece[fates.piece], -1)
     touching = diameter * (0.5 + _SIEVED)
@@ -163,16 +163,16 @@ def _size(
             continue
         fewer = -(-len(fates.outcome) // _ALONE)
         name = f"{at}, {mechanism} alone"
-        some = _follow(filter, diameter, (mechanism,), number, fewer, medium, settings, air, tell, name, kept)
+        some = _follow(filter, diameter, (mechanism,), number, fewer, medium, settings, air, progress, name, kept)
         alone[mechanism] = float((some.outcome == CAPTURED).mean())
-    diffused = _diffused(filter, diameter, medium, settings, air, tell, at)
-    rare = _rare(filter, diameter, fates, medium, settings, air, tell, at)
+    diffused = _diffused(filter, diameter, medium, settings, air, progress, at)
+    rare = _rare(filter, diameter, fates, medium, settings, air, progress, at)
     return _Size(diameter, fates, fiber, sieved, alone, diffused, rare)
 
 
 def _rare(
     filter: Filter, diameter: float, fates: Fates, medium: Medium, settings: CaptureSettings, air: FlowSettings,
-    tell: Progress, at: str,
+    progress: Progress, at: str,
 ) -> RarePenetration | None:  # fmt: skip
     """Penetration by layers where it is too small to count."""
     motion = _motion(diameter, settings.mechanisms, settings, air)
@@ -189,7 +189,7 @@ def _rare(
     reached = float(np.clip(height[min(known, len(height)) - 1], bottom + 0.02 * (top - bottom), top))
     depth = np.log(len(fates.outcome) / (len(fates.outcome) - min(known, len(height)) + 1.0))
     layers = int(np.clip(np.ceil(depth * (top - bottom) / (reached - bottom)), 2, _MOST_LAYERS))
-    tell(f"{at}: penetration by {layers} layers")
+    progress(f"{at}: penetration by {layers} layers")
     planes = np.append(np.linspace(bottom, top, layers + 1)[1:-1], medium.box.upper[2])
     pace = pace_of(
         float(medium.mat.radius.min()), motion.diffusivity > 0.0, _TRANSITS * medium.box.size[2] / air.face_velocity
@@ -203,7 +203,7 @@ def _diffused(
     medium: Medium,
     settings: CaptureSettings,
     air: FlowSettings,
-    tell: Progress,
+    progress: Progress,
     at: str,
 ) -> float | None:
     """Efficiency by the concentration, where the cells resolve the layer that diffusion leaves about a fiber."""
@@ -215,7 +215,7 @@ def _diffused(
     layer = thick * (motion.diffusivity / (air.face_velocity * thick)) ** (1.0 / 3.0)
     if layer < _RESOLVED * float(np.median(medium.cells.size)):
         return None
-    tell(f"{at}: concentration")
+    progress(f"{at}: concentration")
     found = concentration_penetration(filter.cells, filter.grid, motion.contact, motion.diffusivity)
     return 1.0 - found.value if found.error < _TRUSTED else None
 
@@ -247,7 +247,7 @@ def filter_for(medium: Medium, diameter: float) -> tuple[Filter, Ints]:
 
 def _follow(
     filter: Filter, diameter: float, mechanisms: tuple[Mechanism, ...], number: int, count: int | None, medium: Medium,
-    settings: CaptureSettings, air: FlowSettings, tell: Progress, at: str, kept: Path | None,
+    settings: CaptureSettings, air: FlowSettings, progress: Progress, at: str, kept: Path | None,
 ) -> Fates:  # fmt: skip
     motion = _motion(diameter, mechanisms, settings, air)
     crossing = medium.box.size[2] / air.face_velocity
@@ -260,7 +260,7 @@ def _follow(
     for fates in counted(filter, motion, pace, settings.seed, number, count, settings.half_width, place):
         trials, caught = len(fates.outcome), int((fates.outcome == CAPTURED).sum())
         low, high = share_interval(caught, trials)
-        tell(
+        progress(
             f"{at}: {trials} particles, efficiency {100 * caught / trials:.3g} % ({100 * low:.3g} to {100 * high:.3g})",
             trials / count if count else min((settings.half_width or 1.0) / (0.5 * (high - low)), 1.0) ** 2,
         )

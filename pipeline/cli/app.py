@@ -447,9 +447,9 @@ def tomography(
     from pipeline.cli.listen import listening
     from pipeline.cli.tomograms import surface_of_tomogram
 
-    with listening(err, quiet or as_json) as tell:
+    with listening(err, quiet or as_json) as progress:
         surface_of_tomogram(
-            stack, voxel, window, shape, kind, threshold, smallest, dark, surface, case, as_json, quiet, tell
+            stack, voxel, window, shape, kind, threshold, smallest, dark, surface, case, as_json, quiet, progress
         )
 
 

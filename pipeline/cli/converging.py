@@ -26,17 +26,17 @@ def converge_case(path: Path, folder: Path, seeds: int, overrides: tuple[str, ..
     if seeds < 1:
         raise CaseError(f"--seeds {seeds}: one or more")
     case = read_case(path, overrides)
-    with listening(Console(stderr=True), quiet or as_json) as tell:
+    with listening(Console(stderr=True), quiet or as_json) as progress:
         from pipeline.study.converge import converge
         from pipeline.study.converge_plot import plot_convergence
 
-        found = converge(case, folder, seeds, tell)
+        found = converge(case, folder, seeds, progress)
         from pipeline.analytics.tables.plots import save_figure
 
         with disk_trouble_explained(folder):
             store.write_json(own_file(folder / RESULT), found)
             save_figure(plot_convergence(found), own_file(folder / PLOT))
-        report(folder, tell)
+        report(folder, progress)
     if as_json:
         sys.stdout.write(json.dumps(dataclasses.asdict(found), indent=2, allow_nan=False) + "\n")
     elif not quiet:

@@ -49,14 +49,14 @@ def judge_mesh(
 ) -> int:
     """Print what a mesh is like and give the exit code: 0 where the verdict is better than what one fails on."""
     settings = read_case(limits).quality if limits else None
-    with listening(Console(stderr=True), quiet or as_json) as tell:
-        tell(f"reading {path}")
+    with listening(Console(stderr=True), quiet or as_json) as progress:
+        progress(f"reading {path}")
         source = _source(path)
         if limits is not None and settings is not None:
             source = dataclasses.replace(source, limits=settings, limits_of=f"The limits are those of {limits}")
-        report = judge(source.mesh, source.limits, tell)
+        report = judge(source.mesh, source.limits, progress)
         if page or scene:
-            _write_pages(path, source, report, page, scene, tell)
+            _write_pages(path, source, report, page, scene, progress)
     if as_json:
         sys.stdout.write(json.dumps(dataclasses.asdict(report), indent=2, allow_nan=False) + "\n")
     elif not quiet:
@@ -77,7 +77,7 @@ def _source(path: Path) -> _Source:
 
 
 def _write_pages(
-    path: Path, source: _Source, report: QualityReport, page: Path | None, scene: Path | None, tell: Progress
+    path: Path, source: _Source, report: QualityReport, page: Path | None, scene: Path | None, progress: Progress
 ) -> None:
     # pages take a second to load what they need, for nobody who wants a table only
     from pipeline.report.page.content import MeshContent, SourceFile
@@ -89,9 +89,9 @@ def _write_pages(
     content = MeshContent(path, source.mesh, report, source.limits, source.limits_of, files)
     if page is not None:
         with disk_trouble_explained(page):
-            write_mesh_page(content, page, tell)
+            write_mesh_page(content, page, progress)
     if scene is not None:
-        tell("page: scene")
+        progress("page: scene")
         with disk_trouble_explained(scene):
             write_scene(layers_of_mesh(content), str(path), scene, flow=False)
 

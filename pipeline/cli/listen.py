@@ -32,13 +32,13 @@ def listening(console: Console, quiet: bool) -> Iterator[Tell]:
         ) as live:
             task = live.add_task("starting", total=None)
 
-            def tell(what: str, done: float | None = None) -> None:
+            def progress(what: str, done: float | None = None) -> None:
                 if what.startswith(NOTE):
                     live.console.print(what, markup=False, highlight=False, soft_wrap=True)
                 else:
                     live.update(task, description=what, total=1.0, completed=done or 0.0)
 
-            yield tell
+            yield progress
     else:
         yield _plain(console)
 
@@ -46,7 +46,7 @@ def listening(console: Console, quiet: bool) -> Iterator[Tell]:
 def _plain(console: Console) -> Tell:
     last = -math.inf
 
-    def tell(what: str, done: float | None = None) -> None:
+    def progress(what: str, done: float | None = None) -> None:
         nonlocal last
         now = time.monotonic()
         if now - last >= _GAP or what.startswith(NOTE):
@@ -54,4 +54,4 @@ def _plain(console: Console) -> Tell:
             share = f" {done:.0%}" if done is not None else ""
             console.print(f"  {what}{share}", markup=False, highlight=False, soft_wrap=True)
 
-    return tell
+    return progress

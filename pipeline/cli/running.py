@@ -42,8 +42,8 @@ def run_case(
         else:
             out.print(prospect_table(prospects))
         return
-    with listening(Console(stderr=True) if as_json else out, quiet) as tell:
-        outcomes = run(case, folder, until or LAST, frozenset(force), tell)
+    with listening(Console(stderr=True) if as_json else out, quiet) as progress:
+        outcomes = run(case, folder, until or LAST, frozenset(force), progress)
     if as_json:
         stages = [{**asdict(outcome), "folder": str(outcome.folder)} for outcome in outcomes]
         sys.stdout.write(json.dumps({"folder": str(folder), "stages": stages}, indent=2, allow_nan=False) + "\n")

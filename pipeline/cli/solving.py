@@ -28,8 +28,8 @@ class _Changes(BaseModel):
 def solve_run(folder: Path, overrides: tuple[str, ...], again: bool, as_json: bool, quiet: bool) -> None:
     """Bring a run up to its solution and print it."""
     case = _changed(Run.opened(folder).case, overrides)
-    with listening(Console(stderr=True), quiet or as_json) as tell:
-        outcomes = run(case, folder, SOLVE, frozenset({SOLVE} if again else ()), tell)
+    with listening(Console(stderr=True), quiet or as_json) as progress:
+        outcomes = run(case, folder, SOLVE, frozenset({SOLVE} if again else ()), progress)
     last = next(outcome for outcome in outcomes if outcome.stage == SOLVE)
     if last.how == "skipped":
         raise StageError(f"{folder} was not solved: {last.counts['reason']}")

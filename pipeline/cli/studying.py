@@ -26,8 +26,8 @@ def run_study(
         raise CaseError(f"--workers {workers}: one or more")
     study = read_study(path)
     out = Console()
-    with listening(out, quiet) as tell:
-        result = carry_out_study(study, folder, workers, scheduler, tell)
+    with listening(out, quiet) as progress:
+        result = carry_out_study(study, folder, workers, scheduler, progress)
         with disk_trouble_explained(folder):
             written = write_tables(result, folder)
             written += _drawn(study, result, folder, plot)

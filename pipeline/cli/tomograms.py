@@ -37,7 +37,7 @@ def surface_of_tomogram(
     case: Path | None,
     as_json: bool,
     quiet: bool,
-    tell: Progress,
+    progress: Progress,
 ) -> None:
     """Read, segment, make the surface, write it and its case, and tell what it is like."""
     edge = read_length(voxel, "--voxel")
@@ -50,11 +50,11 @@ def surface_of_tomogram(
         raise CaseError(f"--surface {into}: write .vtp (64 bits), .ply or .stl")
     if case is not None and case.exists():
         raise CaseError(f"{case} is there already; name another file for the case")
-    tell(f"reading {path.name}")
+    progress(f"reading {path.name}")
     gray = read_voxels(path, _whole(window, 6, "--window"), _whole(shape, 3, "--shape"), kind)
-    tell(f"{gray.size / 1e6:.1f} million voxels, about {gray.size * MEMORY_PER_VOXEL / 2**30:.1f} GiB")
+    progress(f"{gray.size / 1e6:.1f} million voxels, about {gray.size * MEMORY_PER_VOXEL / 2**30:.1f} GiB")
     found = segment(gray, level, smallest, dark)
-    tell("making the surface")
+    progress("making the surface")
     points, triangles = surface_of(found.solid, edge)
     size = np.array(found.solid.shape) * edge
     told = {

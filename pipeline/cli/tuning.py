@@ -35,8 +35,8 @@ def tune_case(
     wanted = read_targets(targets)
     case = read_case(path, overrides)
     # the answer alone goes to the standard output, so that it can be sent into a file
-    with listening(Console(stderr=True), quiet) as tell:
-        tuned = tune(case, wanted, seeds, frozenset(keep), tell)
+    with listening(Console(stderr=True), quiet) as progress:
+        tuned = tune(case, wanted, seeds, frozenset(keep), progress)
     if as_json:
         sys.stdout.write(json.dumps(dataclasses.asdict(tuned), indent=2, allow_nan=False) + "\n")
         return

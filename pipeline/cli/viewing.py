@@ -26,8 +26,8 @@ _NOTHING = "{} has no mat yet, so there is nothing to see; fibertwin run makes o
 def write_page(folder: Path, quiet: bool) -> None:
     """Write a run's page and say where it is."""
     out = Console()
-    with listening(out, quiet) as tell:
-        page = report(folder, tell)
+    with listening(out, quiet) as progress:
+        page = report(folder, progress)
     if not quiet:
         out.print(str(page), markup=False, highlight=False, soft_wrap=True)
 
@@ -61,11 +61,11 @@ def write_scene_of_run(folder: Path, path: Path) -> None:
     from pipeline.report.views.scene_file import write_scene
 
     out = Console()
-    with listening(out, False) as tell:
+    with listening(out, False) as progress:
         content = Run.opened(folder)
         if content.get(Mat) is None:
             raise StageError(_NOTHING.format(folder))
-        tell("collecting surfaces")
+        progress("collecting surfaces")
         with disk_trouble_explained(path):
             write_scene(layers_of_run(content), content.name, path)
     size = path.stat().st_size / 1e6
@@ -81,8 +81,8 @@ def _check_scene(scene: str, there: tuple[str, ...], folder: Path) -> None:
 
 def _draw(subject: Subject, files: dict[str, Path], kind: str) -> None:
     out = Console()
-    with listening(out, False) as tell, Painting(subject, files, kind) as painting:
-        tell(f"drawing {', '.join(files)}")
+    with listening(out, False) as progress, Painting(subject, files, kind) as painting:
+        progress(f"drawing {', '.join(files)}")
         pictures = painting.finished()
     if pictures.trouble:
         raise StageError(

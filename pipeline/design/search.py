@@ -29,13 +29,13 @@ class Search:
         How many mats each look grows, from the settings' seed on.
     amount : Target
         What the number of fibers has to meet.
-    tell : Progress
+    progress : Progress
     """
 
     def __init__(
-        self, settings: LayeredSettings, flow: FlowSettings, seeds: int, amount: Target, tell: Progress
+        self, settings: LayeredSettings, flow: FlowSettings, seeds: int, amount: Target, progress: Progress
     ) -> None:
-        self.settings, self.flow, self.amount, self.tell = settings, flow, amount, tell
+        self.settings, self.flow, self.amount, self.progress = settings, flow, amount, progress
         self.seeds = tuple(range(settings.seed, settings.seed + seeds))
         self.looked: dict[Place, tuple[list[History], float | None]] = {}
         # nearly the most that max_fibers allows, which a few fibers must not exceed by chance
@@ -61,7 +61,7 @@ class Search:
         """Grow mats there, and find the coverage at which they have their amount; None where they cannot."""
         if place not in self.looked:
             slope, spacing = place
-            self.tell(f"look {len(self.looked) + 1}, slope {slope:.4g}, spacing {readable('spacing', spacing)}")
+            self.progress(f"look {len(self.looked) + 1}, slope {slope:.4g}, spacing {readable('spacing', spacing)}")
             self.looked[place] = self._look(place)
         return self.looked[place]
 

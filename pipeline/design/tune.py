@@ -83,7 +83,7 @@ def tune(
     targets: tuple[Target, ...],
     seeds: int = 8,
     keep: frozenset[str] = frozenset(),
-    tell: Progress = silent,
+    progress: Progress = silent,
 ) -> Tuned:
     """Find the slope, the spacing and the coverage with which layered mats meet targets on average.
 
@@ -99,7 +99,7 @@ def tune(
     keep : frozenset of str
         ``relaxation_slope`` or ``spacing``: what stays as the case has it. Without it, spacing stays as long as the
         slope will do.
-    tell : Progress
+    progress : Progress
 
     Returns
     -------
@@ -119,7 +119,7 @@ def tune(
     if seeds < 2:
         raise CaseError(f"--seeds {seeds}: a spread takes two mats or more")
     amount, other = _roles(settings, targets)
-    search = Search(settings, case.flow, seeds, amount, tell)
+    search = Search(settings, case.flow, seeds, amount, progress)
     place = (settings.relaxation_slope, settings.spacing)
     if other is not None:
         place = _solve(search, settings, keep, other)

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pipeline.geometry.compiled import compiled
+from pipeline.geometry.parts import largest_part
 from pipeline.geometry.tets import FACES
 from pipeline.geometry.triangles import Ints
 
@@ -37,6 +38,22 @@ def neighbors(tets: Ints) -> Ints:
     if crowded:
         raise ValueError(f"{crowded} faces belong to more than two cells")
     return found
+
+
+def largest_part_of(across: Ints) -> npt.NDArray[np.bool_]:
+    """Find the cells of the largest part of a mesh, parts being joined through faces.
+
+    Parameters
+    ----------
+    across : (m, 4) int array
+        As `neighbors` gives it.
+
+    Returns
+    -------
+    (m,) bool array
+    """
+    cell, side = np.nonzero(across >= 0)
+    return largest_part(cell, across[cell, side], np.ones(len(across), dtype=bool))
 
 
 def pairs_of(across: Ints) -> tuple[Ints, Ints]:

@@ -5,6 +5,8 @@
 import numpy as np
 import numpy.typing as npt
 
+from pipeline.geometry.parts import parts
+
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
@@ -143,15 +145,10 @@ def connected_pieces(triangles: Ints) -> Ints:
     >>> connected_pieces(np.array([[0, 1, 2], [3, 4, 5], [2, 1, 6]])).tolist()
     [0, 1, 0]
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     names, corner = np.unique(triangles, return_inverse=True)
     corner = corner.reshape(triangles.shape)
     ends = corner[:, [0, 1, 1, 2]].reshape(-1, 2)
-    graph = coo_array((np.ones(len(ends), dtype=np.int8), (ends[:, 0], ends[:, 1])), shape=(len(names), len(names)))
-    pieces: Ints = connected_components(graph, directed=False)[1].astype(np.int64)[corner[:, 0]]
-    return pieces
+    return parts(ends[:, 0], ends[:, 1], len(names))[1][corner[:, 0]]
 
 
 def vertex_sums(triangles: Ints, vectors: Floats, vertices: int) -> Floats:

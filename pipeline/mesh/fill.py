@@ -18,7 +18,7 @@ _LONG = 120.0  # seconds of processor time that are said before they are spent
 
 
 def fill(
-    domain: FluidDomain, settings: TetmeshSettings, tell: Progress = silent, folder: Path | None = None
+    domain: FluidDomain, settings: TetmeshSettings, progress: Progress = silent, folder: Path | None = None
 ) -> tuple[FaceMesh, TetmeshMeasures]:
     """Mesh the air, whatever the engine, as faces between cells.
 
@@ -26,7 +26,7 @@ def fill(
     ----------
     domain : FluidDomain
     settings : TetmeshSettings
-    tell : Progress
+    progress : Progress
     folder : Path, optional
         Of the stage's result, where an engine that is a program of its own leaves what it was told.
 
@@ -43,32 +43,32 @@ def fill(
     engine = settings.mesher
     expected = engine.estimate(slenderness(domain), settings) if engine.estimate is not None else None
     if expected is not None and expected.seconds > _LONG:
-        tell(
+        progress(
             f"{NOTE}{engine.name} will take about {expected.seconds / 60:.0f} minutes for some {expected.cells:,.2g} "
             f"cells; {engine.quicker}"
         )
     for left in reversed(range(engine.tries)):
         try:
-            return _sound(domain, settings, tell, folder)
+            return _sound(domain, settings, progress, folder)
         except FlawedMeshError as flaw:
             if not left:
                 raise FlawedMeshError(f"{flaw} ({engine.tries} runs)" if engine.tries > 1 else str(flaw)) from flaw
-            tell(f"meshing again, since {flaw}")
+            progress(f"meshing again, since {flaw}")
     raise AssertionError("an engine is tried at least once")
 
 
 def _sound(
-    domain: FluidDomain, settings: TetmeshSettings, tell: Progress, folder: Path | None
+    domain: FluidDomain, settings: TetmeshSettings, progress: Progress, folder: Path | None
 ) -> tuple[FaceMesh, TetmeshMeasures]:
     """Mesh once, and hold the mesh against the fibers."""
     engine = settings.mesher
-    mesh, measures = engine.mesh(domain, settings, tell, folder)
+    mesh, measures = engine.mesh(domain, settings, progress, folder)
     if abs(measures.volume_error) > settings.volume_error:
         raise FlawedMeshError(
             f"the mesh keeps the fibers' volume to {measures.volume_error:+.2%}, allowed is "
             f"{settings.volume_error:.2%}; {engine.truer}, or raise tetmesh.volume_error"
         )
-    tell("measuring the walls", 0.95)
+    progress("measuring the walls", 0.95)
     found = fidelity(mesh, domain)
     faults = found.faults(settings.deviation)
     if faults:

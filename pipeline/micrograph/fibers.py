@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from pipeline.geometry.parts import parts
 from pipeline.micrograph.profile import Floats, Optics, fitted, middle_line, optics_of, profiles
 from pipeline.micrograph.ribbons import Image, slopes
 from pipeline.micrograph.trace import Trace, traces
@@ -112,8 +111,7 @@ def _linked(found: Sequence[Trace], width: Floats) -> list[FiberSeen]:
             ):
                 pairs.append((i, j))
     one, other = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
-    graph = coo_array((np.ones(len(one)), (one, other)), shape=(len(found), len(found)))
-    count, fiber = connected_components(graph, directed=False)
+    count, fiber = parts(one, other, len(found))
     return [_fiber(np.flatnonzero(fiber == k), found, lines, width) for k in range(count)]
 
 

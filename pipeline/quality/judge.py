@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pipeline.geometry.parts import parts
 from pipeline.geometry.polyhedra import Polyhedra
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.mesh import FaceMesh
@@ -191,17 +192,11 @@ def _sentence(metric: Metric) -> str:
 
 def _topology(mesh: FaceMesh) -> tuple[list[str], list[str]]:
     """Tell what no metric sees: points without faces; and what `checkMesh` notes and lets pass."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    links = coo_array(
-        (np.ones(mesh.internal, np.int8), (mesh.owner[: mesh.internal], mesh.neighbour)), shape=(mesh.cells,) * 2
-    )
-    parts, part = connected_components(links, directed=False)
+    count, part = parts(mesh.owner[: mesh.internal], mesh.neighbour, mesh.cells)
     troubles, notes = [], []
-    if parts > 1:
+    if count > 1:
         smallest = int(np.bincount(part).min())
-        notes.append(f"{parts} parts of the mesh share no face, the smallest has {smallest} cells")
+        notes.append(f"{count} parts of the mesh share no face, the smallest has {smallest} cells")
     unused = len(mesh.points) - len(np.unique(mesh.corners))
     if unused:
         troubles.append(f"{unused} points belong to no face")

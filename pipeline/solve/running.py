@@ -182,7 +182,7 @@ def _run(
                 nonlocal rows, last
                 rows = read_back.table(work)
                 if len(rows):
-                    _tell(progress, log, rows, flow, settings)
+                    _progress(progress, log, rows, flow, settings)
                     lost = len(rows) > settings.window and abs(_mass_error(rows[-1])) > LOST_MASS
                     if lost or not math.isfinite(_drop(rows[-1], flow)):
                         raise _failure(f"diverged after {rows[-1, 0]:.0f} iterations", log)
@@ -240,7 +240,7 @@ def _mass_error(row: Floats) -> float:
     return float(-row[4] / row[3] - 1.0)
 
 
-def _tell(progress: Progress, log: Path, rows: Floats, flow: Flow, settings: OpenFoamSettings) -> None:
+def _progress(progress: Progress, log: Path, rows: Floats, flow: Flow, settings: OpenFoamSettings) -> None:
     last = change(rows[:, 1] - rows[:, 2], settings.window)
     found = read_back.residuals(tail(log, 60))
     told = ", ".join(f"{name} {value:.1e}" for name, value in sorted(found.items()))

@@ -83,7 +83,7 @@ def carry_out_study(
     folder: Path,
     workers: int | None = None,
     scheduler: str | None = None,
-    tell: Progress = silent,
+    progress: Progress = silent,
 ) -> StudyResult:
     """Run what is still to be run of a study, and put everything together.
 
@@ -94,7 +94,7 @@ def carry_out_study(
         Where results are kept; the same study in the same folder continues.
     workers, scheduler : optional
         As for `pipeline.study.workers.carried_out`.
-    tell : Progress
+    progress : Progress
 
     Returns
     -------
@@ -116,14 +116,14 @@ def carry_out_study(
         if kept:
             asked.check(read_result(next(task for task in tasks if task not in todo)))
         if todo:
-            tell(f"runs, {kept} of {len(tasks)} kept from before", kept / len(tasks))
+            progress(f"runs, {kept} of {len(tasks)} kept from before", kept / len(tasks))
             for done, (task, outcome) in enumerate(carried_out(todo, workers, scheduler), start=1):
                 if isinstance(outcome, BaseException):
                     errors[task.name] = _told(outcome)
                 else:
                     asked.check(outcome)
                 failed = f", {len(errors)} failed" if errors else ""
-                tell(f"runs, {kept + done} of {len(tasks)} done{failed}", (kept + done) / len(tasks))
+                progress(f"runs, {kept + done} of {len(tasks)} done{failed}", (kept + done) / len(tasks))
         points = tuple(_point(study, number, settings, tasks, errors) for number, settings in enumerate(study.points()))
     return StudyResult(tuple(study.sweep), study.quantities, points, len(todo) - len(errors), kept, study.reference)
 

@@ -9,12 +9,12 @@ from pipeline.cli import listen
 
 
 def told(console: Console, quiet: bool = False) -> None:
-    with listen.listening(console, quiet) as tell:
+    with listen.listening(console, quiet) as progress:
         # a solve of a minute that tells of itself ten times a second, and other stages after it
         for step in range(600):
-            tell(f"solve: iteration {3 * step}, pressure drop 3.4 Pa", step / 600)
+            progress(f"solve: iteration {3 * step}, pressure drop 3.4 Pa", step / 600)
         for stage in ("capture", "report"):
-            tell(f"{stage}: working")
+            progress(f"{stage}: working")
 
 
 def test_without_a_terminal_a_line_is_printed_every_few_seconds(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -34,10 +34,10 @@ def test_without_a_terminal_a_line_is_printed_every_few_seconds(monkeypatch: pyt
 @pytest.mark.parametrize("terminal", [True, False])
 def test_a_note_stays_to_be_read_between_lines_that_do_not(terminal: bool) -> None:
     written = io.StringIO()
-    with listen.listening(Console(file=written, force_terminal=terminal, width=200), quiet=False) as tell:
-        tell("tetmesh: preparing")
-        tell("note: this takes about 12 minutes; raise tetmesh.edge")
-        tell("tetmesh: meshing")
+    with listen.listening(Console(file=written, force_terminal=terminal, width=200), quiet=False) as progress:
+        progress("tetmesh: preparing")
+        progress("note: this takes about 12 minutes; raise tetmesh.edge")
+        progress("tetmesh: meshing")
     # a live line is drawn over; what was printed stands on a line of its own
     assert "note: this takes about 12 minutes; raise tetmesh.edge\n" in written.getvalue()
 

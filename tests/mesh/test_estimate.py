@@ -97,13 +97,13 @@ def test_a_long_mesh_is_announced_with_its_key_before_it_starts(monkeypatch: pyt
     domain = enclose(unite(generate(case.mat), case.surface), case.enclosure)
     told: list[str] = []
 
-    def tell(what: str, done: float | None = None) -> None:
+    def progress(what: str, done: float | None = None) -> None:
         told.append(what)
 
-    filling.fill(domain, case.tetmesh, tell)
+    filling.fill(domain, case.tetmesh, progress)
     assert not [what for what in told if what.startswith("note:")]
     told.clear()
     monkeypatch.setattr(filling, "_LONG", 0.0)
-    filling.fill(domain, case.tetmesh, tell)
+    filling.fill(domain, case.tetmesh, progress)
     assert told[0].startswith("note: lattice will take about")
     assert "tetmesh.edge" in told[0]

@@ -4,11 +4,11 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from pipeline.geometry.adjacency import neighbors
+from pipeline.geometry.adjacency import largest_part_of, neighbors
 from pipeline.geometry.fibers import FiberDistance
 from pipeline.geometry.tets import boundary, volumes
 from pipeline.mesh.improve.corners import split_corners, split_longest
-from pipeline.mesh.improve.crevices import in_crevice, largest_part
+from pipeline.mesh.improve.crevices import in_crevice
 from pipeline.mesh.improve.fit import fitted
 from pipeline.mesh.improve.mend import mended
 from pipeline.nouns.arrays import Floats, Ints
@@ -147,7 +147,7 @@ def test_only_cells_in_the_tip_of_a_wedge_are_filled_at_first() -> None:
 def test_the_largest_part_is_kept() -> None:
     _, tets = kuhn_box(2)
     apart: Ints = np.concatenate([tets, np.array([[100, 101, 102, 103]])])
-    np.testing.assert_array_equal(largest_part(neighbors(apart)), np.arange(len(apart)) < len(tets))
+    np.testing.assert_array_equal(largest_part_of(neighbors(apart)), np.arange(len(apart)) < len(tets))
 
 
 def test_splitting_the_longest_edges_fills_the_same_space() -> None:

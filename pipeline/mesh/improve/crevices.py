@@ -9,8 +9,6 @@ The air in them stands still: they are given to the fibers, a few millionths of 
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from pipeline.nouns.arrays import Ints
 
@@ -47,22 +45,3 @@ def in_crevice(
         on_boundary[walls] = True
         tip &= on_boundary[tets].all(axis=1)
     return tip
-
-
-def largest_part(across: Ints) -> npt.NDArray[np.bool_]:
-    """Find the cells of the largest part of a mesh, parts being joined through faces.
-
-    Parameters
-    ----------
-    across : (m, 4) int array
-        Neighbor of each cell across each face, -1 on the boundary.
-
-    Returns
-    -------
-    (m,) bool array
-    """
-    cell, side = np.nonzero(across >= 0)
-    links = coo_array((np.ones(len(cell), dtype=np.int8), (cell, across[cell, side])), shape=(len(across),) * 2)
-    _, part = connected_components(links, directed=False)
-    result: npt.NDArray[np.bool_] = part == np.bincount(part).argmax()
-    return result

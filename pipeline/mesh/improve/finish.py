@@ -26,7 +26,7 @@ _REACH = 3.0  # radii from a fiber beyond which it does not matter
 
 
 def finished(
-    raw: RawMesh, domain: FluidDomain, settings: TetmeshSettings, tell: Progress
+    raw: RawMesh, domain: FluidDomain, settings: TetmeshSettings, progress: Progress
 ) -> tuple[FaceMesh, TetmeshMeasures]:
     """Mend what an engine left, give each fiber its radius back, and check.
 
@@ -35,7 +35,7 @@ def finished(
     raw : RawMesh
     domain : FluidDomain
     settings : TetmeshSettings
-    tell : Progress
+    progress : Progress
 
     Returns
     -------
@@ -51,7 +51,7 @@ def finished(
 
     points, tets = compacted(raw.points, raw.tets)
     raw_error = domain.volume_error(float(volumes(points, tets).sum()))
-    tell("mending the worst cells", 0.6)
+    progress("mending the worst cells", 0.6)
     limits = np.array(domain.box.lower), np.array(domain.box.upper)
     distance = fiber_distance(domain, _REACH * domain.radius)
     reaches = Reaches(distance, 2.0 * domain.radius, raw.leash, _SLIDE * settings.edge)

@@ -15,7 +15,7 @@ from pipeline.geometry.tets import FACES, volumes
 from pipeline.geometry.triangles import area_vectors, vertex_sums
 from pipeline.mesh.boundary import assign, free_axes
 from pipeline.mesh.improve.corners import split_corners, split_longest, true_boundary
-from pipeline.mesh.improve.crevices import in_crevice, largest_part
+from pipeline.mesh.improve.crevices import in_crevice
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.patches import FIBERS
@@ -79,13 +79,13 @@ def settled(points: Floats, tets: Ints, domain: FluidDomain, reaches: Reaches) -
         Air that was given to the fibers.
     """
     # numba takes half a second to load, which no refused case file should cost
-    from pipeline.geometry.adjacency import neighbors, ring
+    from pipeline.geometry.adjacency import largest_part_of, neighbors, ring
     from pipeline.mesh.improve.mend import faults
 
     filled = 0.0
     for turn in range(_PASSES):
         across = neighbors(tets)
-        whole = largest_part(across)
+        whole = largest_part_of(across)
         if not whole.all():
             tets = tets[whole]
             across = neighbors(tets)
@@ -104,7 +104,7 @@ def settled(points: Floats, tets: Ints, domain: FluidDomain, reaches: Reaches) -
         tets = np.concatenate([tets[~near], mended])
         filled += tips
     across = neighbors(tets)
-    whole = largest_part(across)
+    whole = largest_part_of(across)
     # parts share no face: what is faulty in one is so without the others
     faulty = faults(points, tets, across)[whole] > 1.0
     return points, tets[whole], int(faulty.sum()), filled

@@ -141,7 +141,9 @@ class Creep:
         return self.history[-1][0]
 
 
-def creep(duct: Duct, slip_length: float, tolerance: float, most: int, tell: Tell, start: Creep | None = None) -> Creep:
+def creep(
+    duct: Duct, slip_length: float, tolerance: float, most: int, progress: Tell, start: Creep | None = None
+) -> Creep:
     """Solve for the creeping flow through a duct.
 
     Parameters
@@ -184,7 +186,7 @@ def creep(duct: Duct, slip_length: float, tolerance: float, most: int, tell: Tel
         residuals.append(look.size)
         change = max(abs(look.sharper - before), abs(look.drop - look.sharper))
         state["error"] = change / abs(look.sharper) if look.sharper else np.inf
-        tell(iterations, look.sharper, state["error"])
+        progress(iterations, look.sharper, state["error"])
         if len(residuals) > _PATIENCE and residuals[-1] > _STALLED * residuals[-1 - _PATIENCE]:
             raise StageError(
                 f"the flow stalls after {iterations} iterations (residual {look.size:.1e}): the mesh has cells "

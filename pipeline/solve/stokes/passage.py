@@ -5,6 +5,7 @@
 import numpy as np
 
 from pipeline.errors import StageError
+from pipeline.geometry.parts import parts
 from pipeline.geometry.tets import volumes
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.patches import INLET, OUTLET
@@ -28,8 +29,6 @@ def refuse_blocked(points: Floats, tets: Ints, triangles: dict[str, Ints], unit:
     StageError
         If a cell is inside out, a patch is missing, inlet and outlet are not joined, or a pocket is cut off.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
 
     def place(where: Floats) -> str:
         return "({:.4g}, {:.4g}, {:.4g}) um".format(*(1e6 * (origin + unit * where)))
@@ -47,7 +46,7 @@ def refuse_blocked(points: Floats, tets: Ints, triangles: dict[str, Ints], unit:
     # vertices joined by the edges of cells; air that touches in a vertex or an edge only is rare, and not told apart
     count = len(points)
     row, column = tets[:, [0, 0, 0]].ravel(), tets[:, 1:].ravel()
-    _, part = connected_components(coo_array((np.ones(len(row)), (row, column)), shape=(count, count)), directed=False)
+    _, part = parts(row, column, count)
     through = set(part[triangles[INLET]].ravel().tolist()) & set(part[triangles[OUTLET]].ravel().tolist())
     if not through:
         raise StageError(

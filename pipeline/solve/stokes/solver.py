@@ -82,7 +82,7 @@ def solve_stokes(
     # without slip first: it is a good start for the one with slip
     for wall in ("no_slip", "slip") if fiber_wall == "slip" or length < unit else ("no_slip",):
 
-        def tell(iterations: int, drop: float, error: float, wall: str = wall) -> None:
+        def settling(iterations: int, drop: float, error: float, wall: str = wall) -> None:
             # an error that falls from 1 to the tolerance, in even steps on a logarithmic scale
             share = math.log(min(max(error, settings.tolerance), 1.0)) / math.log(settings.tolerance)
             known = f", changed by {100 * error:.2g} %" if math.isfinite(error) else ""
@@ -96,7 +96,7 @@ def solve_stokes(
             length / unit if wall == "slip" else 0.0,
             settings.tolerance,
             settings.max_iterations,
-            tell,
+            settling,
             found.get("no_slip"),
         )
     this = found[fiber_wall]

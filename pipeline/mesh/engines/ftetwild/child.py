@@ -42,7 +42,12 @@ class Meshed:
 
 
 def run_child(
-    points: Floats, triangles: Ints, options: dict[str, Any], background: dict[str, Any], limits: Limits, tell: Progress
+    points: Floats,
+    triangles: Ints,
+    options: dict[str, Any],
+    background: dict[str, Any],
+    limits: Limits,
+    progress: Progress,
 ) -> Meshed:
     """Call ``pytetwild.tetrahedralize`` in a child process.
 
@@ -56,7 +61,7 @@ def run_child(
     background : dict
         Its `bg_...` arrays, or empty.
     limits : Limits
-    tell : Progress
+    progress : Progress
 
     Raises
     ------
@@ -75,7 +80,7 @@ def run_child(
         command = [sys.executable, "-P", "-m", worker.__name__, str(folder)]
         log = folder / "log"
         with child_process.started(command, folder, log, scratch=[folder]) as child:
-            look = _Look(log, int(options["num_opt_iter"]), tell)
+            look = _Look(log, int(options["num_opt_iter"]), progress)
             used = child_process.watch(child, look, limits, _ADVICE)
         if child.returncode != 0 or not (folder / worker.OUTPUT).exists():
             raise StageError(_crash(child.returncode, log, used.seconds))
@@ -91,8 +96,8 @@ def run_child(
 class _Look:
     """Reads in the mesher's log what it is doing, and tells it."""
 
-    def __init__(self, log: Path, passes: int, tell: Progress) -> None:
-        self._log, self._passes, self._tell = log, passes, tell
+    def __init__(self, log: Path, passes: int, progress: Progress) -> None:
+        self._log, self._passes, self._progress = log, passes, progress
         self._read, self._doing, self._share = 0, "inserting the surface", 0.0
 
     def __call__(self) -> str:
@@ -109,7 +114,7 @@ class _Look:
             # the passes take about a third of the time, the insertion before them and the refining after them the rest
             self._share = 0.2 + (0.3 * int(before) / self._passes if before else 0.3 + min(0.4, 0.2 * int(after)))
         if news:
-            self._tell(f"fTetWild, {self._doing}", self._share)
+            self._progress(f"fTetWild, {self._doing}", self._share)
         return self._doing
 
 

@@ -45,13 +45,13 @@ class TetwildSettings(EngineSettings):
 
 
 def _mesh(
-    domain: "FluidDomain", settings: "TetmeshSettings", tell: "Progress", folder: Path | None
+    domain: "FluidDomain", settings: "TetmeshSettings", progress: "Progress", folder: Path | None
 ) -> "tuple[FaceMesh, TetmeshMeasures]":
     from pipeline.mesh.engines.ftetwild.ftetwild import tetrahedralized
     from pipeline.mesh.improve.finish import finished
 
     unit = domain.mean_diameter
-    return finished(tetrahedralized(domain, settings, unit, tell), domain, settings, tell)
+    return finished(tetrahedralized(domain, settings, unit, progress), domain, settings, progress)
 
 
 def _estimate(slender: float, settings: "TetmeshSettings") -> Estimate:

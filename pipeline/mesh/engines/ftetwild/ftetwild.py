@@ -28,7 +28,7 @@ _BESIDE = 1.0  # diameters: points of a fiber's surface are 0.6 apart, and too t
 _PLANE_ERROR = 0.01  # of a plane's area; rounding of the fibers' cuts takes a few thousandths
 
 
-def tetrahedralized(domain: FluidDomain, settings: TetmeshSettings, unit: float, tell: Progress) -> RawMesh:
+def tetrahedralized(domain: FluidDomain, settings: TetmeshSettings, unit: float, progress: Progress) -> RawMesh:
     """Fill the air with tetrahedra by fTetWild.
 
     The mesh differs a little from run to run: fTetWild draws from the system's own randomness.
@@ -39,7 +39,7 @@ def tetrahedralized(domain: FluidDomain, settings: TetmeshSettings, unit: float,
     settings : TetmeshSettings
     unit : float [m]
         Mean fiber diameter.
-    tell : Progress
+    progress : Progress
 
     Returns
     -------
@@ -54,8 +54,8 @@ def tetrahedralized(domain: FluidDomain, settings: TetmeshSettings, unit: float,
     middle = 0.5 * (np.array(domain.box.lower) + np.array(domain.box.upper))
     own = settings.own(TetwildSettings)
     envelope = own.envelope * 2.0 * float(domain.radius.min())
-    raw = _run((domain.points - middle) / unit, domain, settings, tell)
-    tell("finding the patches")
+    raw = _run((domain.points - middle) / unit, domain, settings, progress)
+    progress("finding the patches")
     points, tets = compacted(raw.points * unit + middle, raw.tets)
     faces, _ = boundary(tets)
     # two envelopes: the mesher bounds the distance to the surface, not the distance along the plane's normal
@@ -121,7 +121,7 @@ def _area(points: Floats, faces: Ints) -> float:
     return float(np.linalg.norm(area_vectors(points, faces), axis=1).sum())
 
 
-def _run(points: Floats, domain: FluidDomain, settings: TetmeshSettings, tell: Progress) -> Meshed:
+def _run(points: Floats, domain: FluidDomain, settings: TetmeshSettings, progress: Progress) -> Meshed:
     own = settings.own(TetwildSettings)
     thinnest = 2.0 * float(domain.radius.min()) / domain.mean_diameter
     diagonal = float(np.linalg.norm(np.ptp(points, axis=0)))
@@ -140,7 +140,7 @@ def _run(points: Floats, domain: FluidDomain, settings: TetmeshSettings, tell: P
         "loglevel": 3,
     }
     limits = Limits(own.time_limit, memory_allowed(settings.memory_limit))
-    return run_child(points, domain.triangles, options, sizes, limits, tell)
+    return run_child(points, domain.triangles, options, sizes, limits, progress)
 
 
 def sizes_wanted(points: Floats, domain: FluidDomain, settings: TetmeshSettings) -> dict[str, np.ndarray]:

@@ -22,12 +22,12 @@ class LatticeSettings(EngineSettings):
 
 
 def _mesh(
-    domain: "FluidDomain", settings: "TetmeshSettings", tell: "Progress", folder: Path | None
+    domain: "FluidDomain", settings: "TetmeshSettings", progress: "Progress", folder: Path | None
 ) -> "tuple[FaceMesh, TetmeshMeasures]":
     from pipeline.mesh.engines.lattice.lattice import lattice_mesh
     from pipeline.mesh.improve.finish import finished
 
-    return finished(lattice_mesh(domain, settings, tell), domain, settings, tell)
+    return finished(lattice_mesh(domain, settings, progress), domain, settings, progress)
 
 
 def _estimate(slender: float, settings: "TetmeshSettings") -> Estimate:

@@ -37,7 +37,7 @@ _FINER = 1  # levels of smaller cubes where air is narrow
 _NARROW = 0.75  # cubes between walls that face each other
 
 
-def lattice_mesh(domain: FluidDomain, settings: TetmeshSettings, tell: Progress) -> RawMesh:
+def lattice_mesh(domain: FluidDomain, settings: TetmeshSettings, progress: Progress) -> RawMesh:
     """Fill the air with tetrahedra, whose vertices at the fibers lie on the true cylinders.
 
     Cubes at a fiber have the edge `settings.edge` times its own diameter; away from it they double where
@@ -48,7 +48,7 @@ def lattice_mesh(domain: FluidDomain, settings: TetmeshSettings, tell: Progress)
     ----------
     domain : FluidDomain
     settings : TetmeshSettings
-    tell : Progress
+    progress : Progress
 
     Returns
     -------
@@ -67,12 +67,12 @@ def lattice_mesh(domain: FluidDomain, settings: TetmeshSettings, tell: Progress)
     """
     began = time.monotonic()
     lower, upper = np.array(domain.box.lower), np.array(domain.box.upper)
-    tell("filling the duct with cubes", 0.1)
+    progress("filling the duct with cubes", 0.1)
     tree, edge = _cubes(domain, settings)
     # numba takes half a second to load, which no refused case file should cost
     from pipeline.mesh.engines.lattice.tetrahedra import lattice_tetrahedra, lattice_vertices
 
-    tell("measuring the distance to the fibers", 0.2)
+    progress("measuring the distance to the fibers", 0.2)
     vertices = lattice_vertices(tree)
     distance = fiber_distance(domain, 2.0 * wanted_edges(domain, settings))
     ends = 2 * tree.counts
@@ -81,7 +81,7 @@ def lattice_mesh(domain: FluidDomain, settings: TetmeshSettings, tell: Progress)
     value = distance.at(points)
     tets = lattice_tetrahedra(tree, vertices, value)
 
-    tell(f"cutting the fibers out of {len(tets)} tetrahedra", 0.4)
+    progress(f"cutting the fibers out of {len(tets)} tetrahedra", 0.4)
     # vertices opposite to each other on cyclic sides are one
     ends[2] += 1
     twins = vertices.places % ends if domain.cyclic else vertices.places
@@ -235,12 +235,11 @@ def _matching_parts(cells: Ints, number: Ints, plane: npt.NDArray[np.int8]) -> I
     -------
     (k, 4) int array
     """
-    from pipeline.geometry.adjacency import boundary_of, neighbors
-    from pipeline.mesh.improve.crevices import largest_part
+    from pipeline.geometry.adjacency import boundary_of, largest_part_of, neighbors
 
     while True:
         across = neighbors(cells)
-        whole = largest_part(across)
+        whole = largest_part_of(across)
         if whole.all():
             return cells
         faces, cell = boundary_of(cells, across)

@@ -31,11 +31,11 @@ class SnappySettings(EngineSettings):
 
 
 def _mesh(
-    domain: "FluidDomain", settings: "TetmeshSettings", tell: "Progress", folder: Path | None
+    domain: "FluidDomain", settings: "TetmeshSettings", progress: "Progress", folder: Path | None
 ) -> "tuple[FaceMesh, TetmeshMeasures]":
     from pipeline.mesh.engines.snappy.mesh import snapped
 
-    return snapped(domain, settings, tell, folder / CASE if folder is not None else None)
+    return snapped(domain, settings, progress, folder / CASE if folder is not None else None)
 
 
 def _missing(settings: "TetmeshSettings") -> str | None:

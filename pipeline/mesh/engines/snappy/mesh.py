@@ -34,7 +34,7 @@ _PLANE_ERROR = 0.02  # of a plane's area: a section of a fiber is a polygon of f
 
 
 def snapped(
-    domain: FluidDomain, settings: TetmeshSettings, tell: Progress = silent, folder: Path | None = None
+    domain: FluidDomain, settings: TetmeshSettings, progress: Progress = silent, folder: Path | None = None
 ) -> tuple[FaceMesh, TetmeshMeasures]:
     """Fill the air with hexahedra that are split near the fibers and moved onto them.
 
@@ -42,7 +42,7 @@ def snapped(
     ----------
     domain : FluidDomain
     settings : TetmeshSettings
-    tell : Progress
+    progress : Progress
     folder : Path, optional
         Where the case is kept: its dictionaries, surface, scripts and logs, without the mesh.
 
@@ -56,21 +56,21 @@ def snapped(
         If OpenFOAM is missing or fails, or the mesh does not keep the duct's planes.
     """
     with scratch_folder("snappy") if folder is None else contextlib.nullcontext(folder) as case:
-        tell("snappyHexMesh, writing its case", 0.0)
+        progress("snappyHexMesh, writing its case", 0.0)
         write_case(domain, settings, case)
         own = settings.own(SnappySettings)
         limits = Limits(own.time_limit, memory_allowed(settings.memory_limit))
-        used = run_case(case, own.cores, limits, tell)
-        tell("reading the mesh", 0.95)
+        used = run_case(case, own.cores, limits, progress)
+        progress("reading the mesh", 0.95)
         mesh = _on_planes(read_openfoam(case), domain.box)
         # the mesh is the stage's own result
         shutil.rmtree(case / "constant" / "polyMesh")
     _check_planes(mesh, domain)
     raw = mesh
-    tell("joining cells in which no gradient is known")
+    progress("joining cells in which no gradient is known")
     mesh, faulty = without_blind_cells(mesh, FIBERS)
     filled = 1.0 - mesh.volume / raw.volume
-    tell("restoring the fibers' volume")
+    progress("restoring the fibers' volume")
     mesh = fitted(mesh, FIBERS, free_axes(mesh.points, domain.box), domain.volume)
     measures = TetmeshMeasures(
         points=len(mesh.points),

@@ -4,10 +4,9 @@
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from pipeline.geometry.faces import compacted
+from pipeline.geometry.parts import largest_part
 from pipeline.nouns.arrays import Ints
 from pipeline.nouns.mesh import FaceMesh, Patch
 
@@ -62,7 +61,7 @@ def without(mesh: FaceMesh, dropped: Mask, patch: str) -> FaceMesh:
     if mesh.patches[-1].name != patch:
         raise ValueError(f"{patch} is not the last patch")
     n = mesh.internal
-    kept = ~dropped & _largest_part(mesh, ~dropped)
+    kept = largest_part(mesh.owner[: mesh.internal], mesh.neighbour, ~dropped)
     number = np.cumsum(kept) - 1
     own, other = kept[mesh.owner], kept[mesh.neighbour]
     inner = np.flatnonzero(own[:n] & other)
@@ -92,12 +91,3 @@ def _assembled(
         Patch(patch.name, int(start), count) for patch, start, count in zip(mesh.patches, starts, counts, strict=True)
     )
     return FaceMesh(points, corners, offsets, owner, neighbour, cells, patches)
-
-
-def _largest_part(mesh: FaceMesh, kept: Mask) -> Mask:
-    own, other = mesh.owner[: mesh.internal], mesh.neighbour
-    linked = kept[own] & kept[other]
-    links = coo_array((np.ones(int(linked.sum()), np.int8), (own[linked], other[linked])), shape=(mesh.cells,) * 2)
-    _, part = connected_components(links, directed=False)
-    result: Mask = part == np.bincount(part[kept]).argmax()
-    return result

@@ -41,7 +41,7 @@ def missing(cores: int) -> str | None:
     return f'tetmesh.engine = "snappy" cannot run: {lacking}' if lacking else None
 
 
-def run_case(case: Path, cores: int, limits: Limits, tell: Progress) -> Used:
+def run_case(case: Path, cores: int, limits: Limits, progress: Progress) -> Used:
     """Mesh a case that `write_case` wrote.
 
     Parameters
@@ -50,7 +50,7 @@ def run_case(case: Path, cores: int, limits: Limits, tell: Progress) -> Used:
     cores : int
     limits : Limits
         On all processes together.
-    tell : Progress
+    progress : Progress
 
     Returns
     -------
@@ -67,7 +67,7 @@ def run_case(case: Path, cores: int, limits: Limits, tell: Progress) -> Used:
     log = case / f"{MESH_SCRIPT}.log"
     log.unlink(missing_ok=True)
     with started([f"./{MESH_SCRIPT}", str(cores)], case, log) as child:
-        used = child_process.watch(child, _Look(case, tell), limits, _ADVICE)
+        used = child_process.watch(child, _Look(case, progress), limits, _ADVICE)
     if child.returncode != 0:
         raise StageError(_failure(case, child.returncode, used.seconds))
     return used
@@ -76,13 +76,13 @@ def run_case(case: Path, cores: int, limits: Limits, tell: Progress) -> Used:
 class _Look:
     """Reads in the logs what is being done, and tells it where it is something else than before."""
 
-    def __init__(self, case: Path, tell: Progress) -> None:
-        self._case, self._tell, self._told = case, tell, ""
+    def __init__(self, case: Path, progress: Progress) -> None:
+        self._case, self._progress, self._told = case, progress, ""
 
     def __call__(self) -> str:
         doing, share = _state(self._case)
         if doing != self._told:
-            self._tell(f"snappyHexMesh, {doing}", share)
+            self._progress(f"snappyHexMesh, {doing}", share)
             self._told = doing
         return doing
 
