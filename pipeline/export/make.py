@@ -10,7 +10,6 @@ from pipeline.analytics.formulas.slip import SLIP_COEFFICIENT
 from pipeline.export.formats.format import Order
 from pipeline.export.formats.openfoam.slip import FiberSlip, fiber_radius
 from pipeline.export.formats.registry import held
-from pipeline.export.wall_fibers import wall_fibers
 from pipeline.export.write import FormatsFailedError, write_all
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import FaceMesh
@@ -45,8 +44,7 @@ def order_of(results: "Results", formats: Iterable[str], progress: Progress) -> 
     shown = results.get(CellFields) if "vtk" in formats else None
     slip = None
     if case.flow.fiber_wall == "slip" and "openfoam" in formats:
-        radius = fiber_radius(results.read(FaceMesh), results.read(FluidDomain))
+        radius = fiber_radius(results.read(FaceMesh), results.read(FluidDomain).radius)
         slip = FiberSlip(SLIP_COEFFICIENT * flow.mean_free_path, radius)
-    fibers = wall_fibers(results.read(FaceMesh), results.read(FluidDomain)) if "vtk" in formats else None
     fields = shown.by_name() if shown is not None else {}
-    return Order(case.export, flow, case.enclosure.sides, fields, slip, progress, fibers)
+    return Order(case.export, flow, case.enclosure.sides, fields, slip, progress)

@@ -9,6 +9,7 @@ from pipeline.mesh.engines.flawed import FlawedMeshError
 from pipeline.mesh.estimate import slenderness
 from pipeline.mesh.settings import TetmeshSettings
 from pipeline.mesh.wall_error import fidelity
+from pipeline.mesh.wall_fibers import wall_fibers
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.mesh_measures import TetmeshMeasures
@@ -33,6 +34,7 @@ def fill(
     Returns
     -------
     FaceMesh, TetmeshMeasures
+        Each wall face of the mesh with its fiber.
 
     Raises
     ------
@@ -69,6 +71,7 @@ def _sound(
             f"{settings.volume_error:.2%}; {engine.truer}, or raise tetmesh.volume_error"
         )
     progress("measuring the walls", 0.95)
+    mesh = replace(mesh, fiber=wall_fibers(mesh, domain))
     found = fidelity(mesh, domain)
     faults = found.faults(settings.deviation)
     if faults:

@@ -6,7 +6,7 @@ import itertools
 
 import numpy as np
 
-from pipeline.geometry.polyhedra import fanned
+from pipeline.geometry.sections import fan
 from pipeline.geometry.triangles import area_vectors
 from pipeline.mesh.distance import fiber_distance
 from pipeline.nouns.arrays import Floats, Ints
@@ -22,12 +22,14 @@ _STEP = 0.25  # of its diameters between the places on a fiber's axis that are l
 def fidelity(mesh: FaceMesh, domain: FluidDomain) -> Fidelity:
     """Measure the walls of a mesh against the fibers.
 
-    Walls are sampled at three points of every triangle, by the rule that integrates quadratics exactly; a sample
-    counts to the fiber that is nearest in space. A fiber's axis is sampled every quarter of its diameter.
+    Walls are sampled at three points of every triangle, by the rule that integrates quadratics exactly: how far each
+    is from the nearest fiber, in that one's diameters, counts to the fiber of its face. A fiber's axis is sampled
+    every quarter of its diameter.
 
     Parameters
     ----------
     mesh : FaceMesh
+        Whose wall faces name their fiber.
     domain : FluidDomain
         What it was made of.
 
@@ -37,7 +39,7 @@ def fidelity(mesh: FaceMesh, domain: FluidDomain) -> Fidelity:
     """
     diameter = 2.0 * domain.radius
     which = mesh.patch(FIBERS)
-    points, triangles = fanned(mesh.points, mesh.corners, mesh.offsets[which.start : which.stop + 1])
+    points, triangles, _, face = fan(mesh.points, mesh.corners, mesh.offsets[which.start : which.stop + 1])
     corners = points[triangles]
     middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
     area = np.repeat(np.linalg.norm(area_vectors(points, triangles), axis=1) / 3.0, 3)
@@ -45,9 +47,8 @@ def fidelity(mesh: FaceMesh, domain: FluidDomain) -> Fidelity:
         return _beside_surface(middles.reshape(-1, 3), area, domain)
     distance = fiber_distance(domain, _REACH * diameter)
     off, piece = distance.with_piece(middles.reshape(-1, 3))
-    known = piece >= 0
-    fiber = np.where(known, distance.field[2][np.maximum(piece, 0)], -1)
-    own = np.where(known, off / diameter[fiber], _REACH)
+    fiber = np.repeat(mesh.fiber[face], 3)
+    own = np.where(piece >= 0, off / diameter[distance.field[2][piece]], _REACH)
     away = np.abs(own)
     in_air = _axis_in_air(points, triangles, domain)
     # the samples of each fiber stand together, nearest first

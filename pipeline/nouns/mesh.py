@@ -2,7 +2,7 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from pipeline.geometry.polyhedra import Polyhedra, fanned, polyhedra
 from pipeline.geometry.tets import volumes
 from pipeline.geometry.triangles import enclosed_volume
 from pipeline.nouns.arrays import Floats, Ints, all_within, freeze, require
+from pipeline.nouns.patches import FIBERS
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -125,6 +126,9 @@ class FaceMesh:
     cells : int
     patches : tuple of Patch
         Boundary faces, in runs that follow each other from face `internal` to the last.
+    fiber : (faces of the fibers' patch,) int array
+        Number in the mat of the fiber that each of its faces stands for, -1 where none is near; empty for a mesh of
+        others' making, of which nobody knows.
     """
 
     points: Floats
@@ -134,6 +138,7 @@ class FaceMesh:
     neighbour: Ints
     cells: int
     patches: tuple[Patch, ...]
+    fiber: Ints = field(default_factory=lambda: np.empty(0, np.int64))
 
     def __post_init__(self) -> None:
         freeze(
@@ -143,6 +148,7 @@ class FaceMesh:
             offsets=np.asarray(self.offsets, np.int64),
             owner=np.asarray(self.owner, np.int64),
             neighbour=np.asarray(self.neighbour, np.int64),
+            fiber=np.asarray(self.fiber, np.int64),
         )
         require(len(self.offsets) == len(self.owner) + 1, "offsets and owners differ in length")
         require(self.points.ndim == 2 and self.points.shape[1] == 3, "points have three coordinates")
@@ -165,6 +171,8 @@ class FaceMesh:
             require(patch.start == end, f"patch {patch.name} does not start where the one before ends")
             end += patch.count
         require(end == len(self.owner), "the patches do not cover the boundary")
+        walls = sum(patch.count for patch in self.patches if patch.name == FIBERS)
+        require(len(self.fiber) in (0, walls), f"{len(self.fiber)} of {walls} faces of {FIBERS} name their fiber")
 
     @property
     def faces(self) -> int:

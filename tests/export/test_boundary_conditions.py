@@ -14,14 +14,13 @@ from pipeline.errors import StageError
 from pipeline.export.formats.openfoam.case import write_openfoam
 from pipeline.export.formats.openfoam.slip import FiberSlip, fiber_radius
 from pipeline.export.settings import ExportSettings
-from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import TetMesh
 from pipeline.openfoam.read import read_openfoam
 from pipeline.solve.bed import Bed
 from pipeline.solve.running import solve
 from pipeline.solve.settings import OpenFoamSettings
 from tests.openfoam import AIR, foam
-from tests.sample_meshes import NO_PIECES, cylinder, duct
+from tests.sample_meshes import cylinder, duct
 
 RADIUS = 0.7e-6
 
@@ -69,27 +68,12 @@ def test_the_wall_belongs_to_the_flow_and_its_old_place_says_so() -> None:
         ExportSettings.model_validate({"fiber_wall": "slip"})
 
 
-def test_each_face_finds_its_fiber_s_radius() -> None:
-    tets = duct((4, 4, 8))
-    mesh = tets.face_mesh()
-    lower = tets.points[tets.faces].mean(axis=1)[:, 2] < 1.0
-    fiber = np.where(tets.patch == 6, np.where(lower, 0, 1), -1)
-    domain = FluidDomain(
-        tets.points,
-        tets.faces,
-        tets.patch,
-        tets.patches,
-        fiber,
-        np.array([0.1, 0.2]),
-        tets.slab,
-        tets.slab,
-        NO_PIECES,
-    )
-    radius = fiber_radius(mesh, domain)
-    patch = mesh.patches[-1]
-    below = mesh.polyhedra().centers[patch.start :, 2] < 1.0
-    assert np.array_equal(radius, np.where(below, 0.1, 0.2))
-    assert fiber_radius(mesh, replace(domain, radius=np.array([0.3, 0.3]))) == 0.3
+def test_each_face_has_its_fiber_s_radius() -> None:
+    mesh = duct((4, 4, 8)).face_mesh()
+    below = mesh.polyhedra().centers[mesh.patch("fibers"), 2] < 1.0
+    mesh = replace(mesh, fiber=np.where(below, 0, 1))
+    assert np.array_equal(fiber_radius(mesh, np.array([0.1, 0.2])), np.where(below, 0.1, 0.2))
+    assert fiber_radius(mesh, np.array([0.3, 0.3])) == 0.3
 
 
 @pytest.mark.openfoam

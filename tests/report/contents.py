@@ -2,6 +2,7 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,7 @@ from pipeline.nouns.flow import Solution
 from pipeline.nouns.flow_field import FlowField
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.mesh_measures import MeshingCost, TetmeshMeasures
+from pipeline.nouns.patches import FIBERS
 from pipeline.quality.judge import judge
 from pipeline.quality.settings import QualitySettings
 from pipeline.solve.stokes.nodes import number_nodes
@@ -37,8 +39,10 @@ SOLUTION = Solution(12.5, 1e-12, 1e-9, 1e-14, 0.001, 1e-6, 400, True, 12.0, 2)
 
 
 def small_mesh() -> FaceMesh:
-    """Make a duct with a bar across it, as large as the mat is."""
-    return duct(size=(10e-6, 10e-6, 20e-6), jitter=0.2).face_mesh()
+    """Make a duct with a bar across it, as large as the mat is: three fibers end to end."""
+    mesh = duct(size=(10e-6, 10e-6, 20e-6), jitter=0.2).face_mesh()
+    along = mesh.polyhedra().centers[mesh.patch(FIBERS), 0]
+    return replace(mesh, fiber=(along / 3.4e-6).astype(np.int64))
 
 
 def still_flow() -> FlowField:

@@ -11,17 +11,14 @@ import pytest
 from PIL import Image
 
 from pipeline.geometry.cells import cell_faces, polygons_of
-from pipeline.nouns.arrays import Floats
-from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.fibers import Mat
 from pipeline.nouns.mesh import FaceMesh, Patch
-from pipeline.nouns.patches import FIBERS
 from pipeline.report.page.page import write_report
 from pipeline.report.views.drawing import BACKGROUND
 from pipeline.report.views.mesh_scenes import MeshSubject
 from pipeline.report.views.painter import possible, trimmed
 from pipeline.report.views.render import Painting, rendering_environment
-from pipeline.report.views.scenes import SCENES, Subject, fibers_of_faces
+from pipeline.report.views.scenes import SCENES, Subject
 from pipeline.report.views.subject import subject_of
 from tests.report.contents import SOLUTION, still_flow, whole
 from tests.report.pages import read
@@ -36,18 +33,6 @@ def test_everything_can_be_seen_of_a_whole_run() -> None:
     subject = subject_of(whole(still_flow()))
     assert subject is not None
     assert possible(subject) == tuple(SCENES)
-
-
-def test_every_wall_of_the_mesh_gets_the_fiber_it_lies_on() -> None:
-    content = whole()
-    mesh, domain = content.read(FaceMesh), content.read(FluidDomain)
-    faces = mesh.triangles()[mesh.patch(FIBERS)]
-    found = fibers_of_faces(mesh, domain)
-    wall = domain.patch == domain.patches.index(FIBERS)
-    centers: Floats = domain.points[domain.triangles[wall]].mean(axis=1)
-    # by brute force over all pairs
-    distance = np.linalg.norm(mesh.points[faces].mean(axis=1)[:, None] - centers[None], axis=2)
-    np.testing.assert_array_equal(found, domain.fiber[wall][distance.argmin(axis=1)])
 
 
 def test_pictures_lose_their_empty_margin() -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from pipeline.errors import StageError
+from pipeline.mesh.wall_fibers import wall_fibers
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.flow import Flow, Solution
 from pipeline.nouns.flow_field import FlowField
@@ -37,6 +38,7 @@ def solved(
     flow = dataclasses.replace(flow, mean_free_path=slip * radius / 0.998)
     bed = Bed(domain.slab.face_area, domain.slab.size[2])
     faces = mesh.face_mesh() if isinstance(mesh, TetMesh) else mesh
+    faces = dataclasses.replace(faces, fiber=wall_fibers(faces, domain))
     return solve_stokes(faces, domain, flow, bed, 0.1, wall, sides, settings or StokesSettings(), silent)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from pipeline.nouns.arrays import Floats, Ints
+from pipeline.nouns.arrays import Floats
 from pipeline.nouns.flow import Flow
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.progress import Progress, silent
@@ -32,8 +32,6 @@ class Order:
         What the duct's sides are to a solver.
     fields : mapping of name to (cells,) array
         Shown on the cells by a format that can.
-    fibers : (faces of the fibers' patch,) int array, optional
-        Number of the fiber at each, for a format that can keep it.
     slip : FiberSlip, optional
         How far the air slips along the fibers; it stands still on them without.
     progress : Progress
@@ -45,7 +43,6 @@ class Order:
     fields: Mapping[str, Floats] = field(default_factory=dict)
     slip: "FiberSlip | None" = None
     progress: Progress = silent
-    fibers: Ints | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,14 +24,10 @@ if TYPE_CHECKING:
 VOLUME = "internal.vtu"
 
 
-def write_vtk(
-    mesh: FaceMesh,
-    folder: Path,
-    fields: Mapping[str, Floats],
-    progress: Progress = silent,
-    fibers: Ints | None = None,
-) -> None:
+def write_vtk(mesh: FaceMesh, folder: Path, fields: Mapping[str, Floats], progress: Progress = silent) -> None:
     """Write `mesh.vtm`, which names `internal.vtu` and `boundary/<patch>.vtp`.
+
+    Cell data `fiber` of the patch of the fibers numbers the fiber at each face, where the mesh knows it.
 
     Parameters
     ----------
@@ -42,8 +38,6 @@ def write_vtk(
     fields : mapping of name to (cells,) array
         Put on the cells, for example the quality of each.
     progress : Progress
-    fibers : (faces of the fibers' patch,) int array, optional
-        Number of the fiber at each, put on the patch as ``fiber``.
     """
     progress("export: VTK")
     grid = volume_grid(mesh)
@@ -54,8 +48,8 @@ def write_vtk(
     for patch in mesh.patches:
         surface = patch_surface(mesh, patch.name)
         surface.cell_data["owner"] = mesh.owner[patch.start : patch.start + patch.count]
-        if patch.name == FIBERS and fibers is not None:
-            surface.cell_data["fiber"] = fibers
+        if patch.name == FIBERS and len(mesh.fiber):
+            surface.cell_data["fiber"] = mesh.fiber
         surface.save(folder / "boundary" / f"{patch.name}.vtp")
     (folder / "mesh.vtm").write_text(format_vtm(mesh.patches), encoding="utf-8")
 
@@ -171,6 +165,6 @@ def format_vtm(patches: tuple[Patch, ...]) -> str:
 FORMAT = Format(
     "vtk",
     (".vtu", ".vtk", ".vti", ".vts", ".vtr"),
-    write=lambda mesh, folder, order: write_vtk(mesh, folder, order.fields, order.progress, order.fibers),
+    write=lambda mesh, folder, order: write_vtk(mesh, folder, order.fields, order.progress),
     read=read_vtk,
 )

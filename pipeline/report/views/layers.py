@@ -21,7 +21,7 @@ from pipeline.report.page.content import MeshContent
 from pipeline.report.views import drawing
 from pipeline.report.views.drawing import near_the_middle
 from pipeline.report.views.mesh_scenes import axis_of_sections
-from pipeline.report.views.scenes import fibers_of_faces, tubes_of
+from pipeline.report.views.scenes import tubes_of
 
 LARGEST = 300_000
 """Triangles that a scene holds at most: 8 MB of text."""
@@ -134,12 +134,11 @@ def _merged(layer: Layer, cell: float) -> Layer:
 
 def _fibers(content: Results) -> Layer:
     name, label = "fibers", "fiber"
-    mesh, domain, surface = content.get(FaceMesh), content.get(FluidDomain), content.get(Surface)
-    if mesh is not None and domain is not None:
+    mesh, surface = content.get(FaceMesh), content.get(Surface)
+    if mesh is not None:
         which = mesh.patch(FIBERS)
-        faces = fibers_of_faces(mesh, domain)
         points, triangles, edges, face = fan(mesh.points, mesh.corners, mesh.offsets[which.start : which.stop + 1])
-        return Layer(name, points, triangles, edges, faces[face], label=label)
+        return Layer(name, points, triangles, edges, mesh.fiber[face], label=label)
     if surface is not None:
         return Layer(name, surface.points, surface.triangles, _all_edges(surface.triangles), surface.fiber, label=label)
     points, triangles, fiber = tubes_of(content.read(Mat))

@@ -63,22 +63,6 @@ class Subject:
     flow: FlowField | None = None
 
 
-def fibers_of_faces(mesh: FaceMesh, domain: FluidDomain) -> Ints:
-    """Fiber of each face of the mesh's patch of fibers: that of the nearest triangle of the duct's surface.
-
-    Returns
-    -------
-    (faces in the patch,) int array
-    """
-    from scipy.spatial import cKDTree
-
-    wall = domain.patch == domain.patches.index(FIBERS)
-    centers = domain.points[domain.triangles[wall]].mean(axis=1)
-    nearest = cKDTree(centers).query(_fiber_faces(mesh))[1]
-    fibers: Ints = domain.fiber[wall][nearest]
-    return fibers
-
-
 def _fiber_faces(mesh: FaceMesh) -> Floats:
     """Center of each face on the fibers [m]."""
     which = mesh.patch(FIBERS)
@@ -209,10 +193,10 @@ SCENES = {
     "mat-top": Scene(("mat",), (900, 900), mat_from_above),
     "mat-side": Scene(("mat",), (1400, 640), mat_from_the_side),
     "duct": Scene(("mat", "domain"), (1500, 900), mat_in_its_duct),
-    "cut": Scene(("mat", "domain", "mesh"), (1500, 850), cut_through_cells),
-    "close-up": Scene(("mat", "domain", "mesh"), (1000, 800), cut_close_up),
-    "cells": Scene(("mat", "domain", "mesh"), (1000, 800), cells_behind_the_cut),
-    "mesh-fibers": Scene(("mat", "domain", "mesh"), (1000, 800), fibers_of_the_mesh),
+    "cut": Scene(("mat", "mesh"), (1500, 850), cut_through_cells),
+    "close-up": Scene(("mat", "mesh"), (1000, 800), cut_close_up),
+    "cells": Scene(("mat", "mesh"), (1000, 800), cells_behind_the_cut),
+    "mesh-fibers": Scene(("mat", "mesh"), (1000, 800), fibers_of_the_mesh),
     "flow": Scene(("mat", "domain", "mesh", "flow"), (1100, 1150), streamlines),
     "flow-slice": Scene(("mat", "domain", "mesh", "flow"), (1300, 1000), slice_of_the_flow),
     "worst": Scene(("mat", "mesh", "worst"), (1000, 800), worst_cells),
@@ -248,11 +232,10 @@ def tubes_of(mat: Mat) -> tuple[Floats, Ints, Ints]:
 
 
 def _mesh_fibers(subject: Subject, beyond: float | None = None) -> "pv.PolyData":
-    mesh, domain = subject.mesh, subject.domain
+    mesh = subject.mesh
     assert mesh is not None
-    assert domain is not None
     skin = patch_surface(mesh, FIBERS, MICRO)
-    skin.cell_data["color"] = colors_by_number(fibers_of_faces(mesh, domain))
+    skin.cell_data["color"] = colors_by_number(mesh.fiber)
     return skin if beyond is None else skin.clip("x", origin=(MICRO * beyond, 0, 0), invert=False)
 
 

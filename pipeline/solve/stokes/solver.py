@@ -10,12 +10,14 @@ import psutil
 
 from pipeline.analytics.formulas.slip import SLIP_COEFFICIENT, knudsen, regime
 from pipeline.errors import StageError
-from pipeline.nouns.arrays import Floats
+from pipeline.geometry.triangles import area_vectors
+from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.fibers import Pieces
 from pipeline.nouns.flow import Flow, Solution
 from pipeline.nouns.flow_field import FlowField
 from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.patches import FIBERS
 from pipeline.progress import Progress
 from pipeline.solve.bed import Bed
 from pipeline.solve.settings import StokesSettings
@@ -45,7 +47,7 @@ def solve_stokes(
     Parameters
     ----------
     mesh : FaceMesh
-        Of tetrahedra.
+        Of tetrahedra, whose wall faces name their fiber.
     domain : FluidDomain
         What it was made of.
     flow : Flow
@@ -101,7 +103,7 @@ def solve_stokes(
         )
     this = found[fiber_wall]
     other = found.get(_OTHER[fiber_wall])
-    drop, drags = this.drop * scale, _drags(duct, this) * flow.viscosity * flow.face_velocity * unit
+    drop, drags = this.drop * scale, _drags(duct, this, mesh.fiber) * flow.viscosity * flow.face_velocity * unit
     drag = float(drags.sum())
     flow_rate = flow.face_velocity * duct.area * unit**2
     kn = float(knudsen(flow.mean_free_path, unit))
@@ -189,8 +191,13 @@ def _refuse_memory(nodes: int, settings: StokesSettings) -> None:
         )
 
 
-def _drags(duct: Duct, flow: Creep) -> Floats:
-    """Drag of each fiber along the flow."""
-    held, first = np.unique(duct.unknown[duct.walls.wall], return_index=True)
-    drags: Floats = np.bincount(duct.walls.fiber[first], -flow.force[held, 2], len(duct.radius)).astype(np.float64)
+def _drags(duct: Duct, flow: Creep, fiber: Ints) -> Floats:
+    """Drag of each fiber along the flow; what holds a node counts to the fibers of the faces around it, by area."""
+    triangles = duct.triangles[FIBERS]
+    around = duct.unknown[duct.nodes.of_triangles(triangles)]
+    area = np.broadcast_to(np.linalg.norm(area_vectors(duct.points, triangles), axis=1)[:, None], around.shape)
+    whole = np.bincount(around.ravel(), area.ravel(), len(flow.force))
+    drag = -(area / whole[around] * flow.force[around, 2]).sum(axis=1)
+    known = fiber >= 0
+    drags: Floats = np.bincount(fiber[known], drag[known], len(duct.radius)).astype(np.float64)
     return drags

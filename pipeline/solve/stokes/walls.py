@@ -36,8 +36,6 @@ class Walls:
         Which tetrahedra have a curved edge.
     wall : (w,) int array
         Nodes on the walls.
-    fiber : (w,) int array
-        Fiber that each is nearest to.
     normal : (w, 3) array
         Out of the air, of the true fiber where a node lies on one; zero elsewhere.
     radius : (w,) array
@@ -53,7 +51,6 @@ class Walls:
     positions: Floats
     curved: Bools
     wall: Ints
-    fiber: Ints
     normal: Floats
     radius: Floats
     axis: Floats
@@ -111,7 +108,7 @@ def curve_walls(
     wall = np.concatenate([corners, nodes.vertices + edge])
     fiber, normal, axis = _true_normals(positions[wall], distance, pieces, radius)
     bent_fully = (offset[edge] == wanted).all(axis=1) & near
-    return Walls(positions, curved, wall, fiber, normal, radius[fiber], axis, int((~bent_fully).sum()), len(edge))
+    return Walls(positions, curved, wall, normal, radius[fiber], axis, int((~bent_fully).sum()), len(edge))
 
 
 def _moved_vertices(

@@ -14,7 +14,11 @@ from pipeline.nouns.flow import Flow
 from pipeline.nouns.mesh import FaceMesh, Patch
 from pipeline.nouns.patches import BY_NAME, FIBERS, INLET, OUTLET, SIDES
 from pipeline.openfoam.decompose import format_decompose
+from pipeline.openfoam.foam_file import format_labels
 from pipeline.progress import Progress, silent
+
+FIBER = "fiber"
+"""Field in `0/` whose values on the wall number the fiber at each face."""
 
 
 def write_openfoam(
@@ -58,6 +62,8 @@ def write_openfoam(
     write_poly_mesh(mesh, folder / "constant/polyMesh", types, settings.encoding)
     _write(folder / "0/U", _velocity(types, flow, slip.condition(mesh) if slip else "type noSlip;"))
     _write(folder / "0/p", _pressure(types))
+    if len(mesh.fiber):
+        _write(folder / "0" / FIBER, _fibers(types, mesh))
     for name, text in foam.format_constant(flow, settings.dialect).items():
         _write(folder / "constant" / name, text)
     _write(folder / "system/controlDict", foam.format_control_dict(flow, settings.dialect))
@@ -116,6 +122,18 @@ def _velocity(types: dict[str, str], flow: Flow, on_fibers: str) -> str:
         for name, kind in types.items()
     }
     return foam.format_field("U", "volVectorField", "[0 1 -1 0 0 0 0]", through, conditions)
+
+
+def _fibers(types: dict[str, str], mesh: FaceMesh) -> str:
+    # no solver reads it; ParaView shows it, and decomposePar cuts it with the mesh
+    numbers = format_labels(mesh.fiber, "ascii").decode().strip()
+    conditions = {
+        name: f"type calculated; value nonuniform List<scalar> {numbers};"
+        if name == FIBERS
+        else _side_condition(kind, "type calculated; value uniform -1;")
+        for name, kind in types.items()
+    }
+    return foam.format_field(FIBER, "volScalarField", "[0 0 0 0 0 0 0]", "-1", conditions)
 
 
 def _pressure(types: dict[str, str]) -> str:

@@ -2,6 +2,8 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+from dataclasses import replace
+
 import numpy as np
 
 from pipeline.errors import StageError
@@ -37,7 +39,7 @@ def with_matching_sides(mesh: FaceMesh) -> FaceMesh:
     for low, high in ((side.name, side.opposite.name) for side in DUCT if side.role == "side" and side.end == LOWER):
         if low in patches or high in patches:
             _match(mesh, patches, low, high, triangles, owner)
-    return FaceMesh(mesh.points, triangles.ravel(), mesh.offsets, owner, mesh.neighbour, mesh.cells, mesh.patches)
+    return replace(mesh, corners=triangles.ravel(), owner=owner)
 
 
 def _match(mesh: FaceMesh, patches: dict[str, Patch], low: str, high: str, triangles: Ints, owner: Ints) -> None:

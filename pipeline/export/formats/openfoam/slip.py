@@ -6,9 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.export.wall_fibers import wall_fibers
 from pipeline.nouns.arrays import Floats
-from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.patches import FIBERS
 from pipeline.openfoam.foam_file import format_scalars
@@ -54,23 +52,23 @@ class FiberSlip:
         return f"type partialSlip; valueFraction nonuniform List<scalar> {fractions};"
 
 
-def fiber_radius(mesh: FaceMesh, domain: FluidDomain) -> float | Floats:
-    """Find the radius of the fiber at each face of the fibers' patch.
+def fiber_radius(mesh: FaceMesh, radius: Floats) -> float | Floats:
+    """Give the radius of the fiber at each face of the fibers' patch.
 
     Parameters
     ----------
     mesh : FaceMesh
-    domain : FluidDomain
-        The surface that the mesh was made from.
+        Whose wall faces name their fiber.
+    radius : (fibers,) array [m]
+        Of each fiber of the mat.
 
     Returns
     -------
     float or (faces of the fibers' patch,) array [m]
-        One number where all fibers are as thick; otherwise that of the nearest triangle of the surface, told by its
-        corners and its center.
+        One number where all fibers are as thick.
     """
-    radii = np.unique(domain.radius)
+    radii = np.unique(radius)
     if len(radii) == 1:
         return float(radii[0])
-    found: Floats = domain.radius[wall_fibers(mesh, domain)]
-    return found
+    of_faces: Floats = radius[mesh.fiber]
+    return of_faces
