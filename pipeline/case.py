@@ -215,7 +215,7 @@ def validate_as(kind: type[_Settings], content: dict[str, Any], source: str) -> 
         return kind.model_validate(content, context=FROM_FILE)
     except ValidationError as problem:
         errors = problem.errors(include_url=False)
-        lines = [_shortened(_line(error, content)) for error in errors[:_MOST_MISTAKES]]
+        lines = [_shortened(_line(error, content, kind)) for error in errors[:_MOST_MISTAKES]]
         if len(errors) > _MOST_MISTAKES:
             lines.append(f"and {len(errors) - _MOST_MISTAKES} more")
         count = f"{len(errors)} mistakes" if len(errors) > 1 else "a mistake"
@@ -227,24 +227,24 @@ def _shortened(line: str) -> str:
     return line if len(line) <= _LONGEST_LINE else f"{line[:_LONGEST_LINE]} ..."
 
 
-def _line(error: Any, content: dict[str, Any]) -> str:
+def _line(error: Any, content: dict[str, Any], kind: type[BaseModel]) -> str:
     keys = [str(key) for key in error["loc"]]
-    place = ".".join(keys) or "the case"
+    place = ".".join(keys) or ("the case" if kind is Case else "all of it")
     message = str(error["msg"]).removeprefix("Value error, ")
     value = error.get("input")
     match error["type"]:
         case "extra_forbidden":
-            if keys[-1] in _known(keys[:-1]):
+            known = _known(keys[:-1], kind)
+            if keys[-1] in known:
                 return f"{place}: does not go with {_kind_of(keys[:-1], content)}; leave it out"
-            moved = [table for table in _known(keys[:-1]) if keys[-1] in _known([*keys[:-1], table])]
+            moved = [table for table in known if keys[-1] in _known([*keys[:-1], table], kind)]
             if moved:
                 places = " or ".join(".".join([*keys[:-1], table, keys[-1]]) for table in moved)
                 return f"{place}: no key of [{'.'.join(keys[:-1])}]; write {places}"
-            known = _known(keys[:-1])
             # what the field calls a key comes before what merely looks like it
             near = [name for name in (_SYNONYMS.get(keys[-1].lower()),) if name in known]
             near = near or difflib.get_close_matches(keys[-1], known, n=1)
-            advice = f"did you mean {near[0]}?" if near else f"known: {', '.join(_known(keys[:-1])) or 'none'}"
+            advice = f"did you mean {near[0]}?" if near else f"known: {', '.join(known) or 'none'}"
             return f"{place}: unknown key; {advice}"
         case "missing":
             return f"{place}: missing; add it"
@@ -263,8 +263,8 @@ def _kind_of(tables: list[str], content: dict[str, Any]) -> str:
     return f"the other keys of {'.'.join(tables) or 'the case'}"
 
 
-def _known(tables: list[str]) -> list[str]:
-    schema = _schema()
+def _known(tables: list[str], kind: type[BaseModel]) -> list[str]:
+    schema = _schema(kind)
     found = [schema]
     for table in tables:
         found = [branch for part in found for branch in _branches(part.get("properties", {}).get(table, {}), schema)]
@@ -272,8 +272,8 @@ def _known(tables: list[str]) -> list[str]:
 
 
 @cache
-def _schema() -> dict[str, Any]:
-    return Case.model_json_schema()
+def _schema(kind: type[BaseModel]) -> dict[str, Any]:
+    return kind.model_json_schema()
 
 
 def _branches(part: dict[str, Any], schema: dict[str, Any]) -> list[dict[str, Any]]:

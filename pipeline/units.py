@@ -107,6 +107,7 @@ _EXAMPLES = {
     "Pa": "320 Pa",
     "Pa*s": "1.8e-5 Pa*s",
     "kg/m^3": "1.2 kg/m^3",
+    "kg/m^2": "8 g/m^2",
     "s": "20 min",
     "byte": "4 GiB",
     "degree": "70 deg",
@@ -145,6 +146,8 @@ _SCALES: dict[str, tuple[tuple[str, float], ...]] = {
     "Pa": (("Pa", 1.0),),
     "Pa*s": (("Pa*s", 1.0),),
     "kg/m^3": (("kg/m^3", 1.0),),
+    # as data sheets of media write it
+    "kg/m^2": (("kg/m^2", 1.0), ("g/m^2", 1e-3), ("g/m2", 1e-3), ("gsm", 1e-3)),
     "s": (("h", 3600.0), ("min", 60.0), ("s", 1.0), ("ms", 1e-3)),
     "byte": (("GiB", 2.0**30), ("MiB", 2.0**20), ("byte", 1.0)),
     "degree": (("deg", 1.0),),

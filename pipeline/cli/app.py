@@ -361,6 +361,109 @@ def measure(
 
 
 @app.command
+def twin(
+    measured: Path | None = None,
+    *,
+    micrograph: str | None = None,
+    pixel: str | None = None,
+    bar: str | None = None,
+    fiber_diameter: str | None = None,
+    fiber_density: Annotated[str | None, Parameter(name=["--fiber-density", "--density"])] = None,
+    basis_weight: str | None = None,
+    solidity: str | None = None,
+    thickness: str | None = None,
+    pressure_drop: str | None = None,
+    face_velocity: str | None = None,
+    temperature: str | None = None,
+    pressure: str | None = None,
+    pressure_model: str | None = None,
+    side: str | None = None,
+    contact: str | None = None,
+    seeds: int | None = None,
+    case: Path | None = None,
+    solve: Annotated[bool, Parameter(negative="")] = False,
+    out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    quiet: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Find the case whose mat has what was measured on a filter, each within its tolerance, seed and all.
+
+    A value takes its tolerance behind "+-", in its unit or as a share of it in percent; 5 % unless given. Fibers come
+    from a micrograph or a diameter; of basis weight, solidity, thickness and pressure drop two or more. What cannot be
+    matched is said, with the nearest; the exit code is then 3.
+
+    Parameters
+    ----------
+    measured
+        A file (TOML) with these options as keys, ``thickness = "60 um +- 5 %"``; options change what it says.
+    micrograph
+        Picture of the fibers (TIFF, PNG), or the file with what ``fibertwin measure --json`` told of one.
+    pixel
+        Length of the picture's pixel: ``--pixel "25 nm"``; unless given, what its file says.
+    bar
+        Length that the bar in the picture's strip stands for, instead of the pixel's.
+    fiber_diameter
+        Where there is no picture: ``"1.4 um +- 3 %"``, or a distribution as a case file has it.
+    fiber_density
+        Of what the fibers are made of, for the basis weight: ``"2500 kg/m^3"``.
+    basis_weight
+        Mass over area: ``"8 g/m^2 +- 3 %"``.
+    solidity
+        Fiber volume over the medium's: ``"8 % +- 5 %"``, whose tolerance is 0.4 points.
+    thickness
+        ``"60 um +- 3 um"``.
+    pressure_drop
+        ``"45 Pa at 5.3 cm/s +- 10 %"``, the face velocity with it.
+    face_velocity
+        Of the pressure drop, where that does not tell.
+    temperature
+        Of the air: ``"20 degC"``.
+    pressure
+        Of the air: ``"1 atm"``.
+    pressure_model
+        Model of the pressure drop; davies unless given.
+    side
+        Edge of the twin's plan; 30 mean diameters unless given.
+    contact
+        clear (fibers do not overlap; unless given) or paper (they do a little, and lie tighter).
+    seeds
+        Mats that every step looks at: 8 unless given.
+    case
+        Write the case into this file (.toml) instead of printing it.
+    solve
+        Solve the flow, and aim again until the solved pressure drop is within its tolerance: minutes.
+    out
+        Folder of the run that is solved; ``runs/<name of the case>`` if left out.
+    as_json
+        Print JSON with SI numbers instead of a table.
+    quiet
+        Print nothing but errors, and the case if it has no file.
+    """
+    from pipeline.cli.twinning import find_twin
+
+    texts = {
+        "micrograph": micrograph,
+        "pixel": pixel,
+        "bar": bar,
+        "fiber_diameter": fiber_diameter,
+        "fiber_density": fiber_density,
+        "basis_weight": basis_weight,
+        "solidity": solidity,
+        "thickness": thickness,
+        "pressure_drop": pressure_drop,
+        "face_velocity": face_velocity,
+        "temperature": temperature,
+        "pressure": pressure,
+        "pressure_model": pressure_model,
+        "side": side,
+        "contact": contact,
+        "seeds": None if seeds is None else str(seeds),
+    }
+    given = {name: text for name, text in texts.items() if text is not None}
+    raise SystemExit(find_twin(found(measured) if measured else None, given, case, solve, out, as_json, quiet))
+
+
+@app.command
 def micrograph(
     source: Path,
     into: Path,

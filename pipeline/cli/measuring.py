@@ -44,7 +44,7 @@ def measure_picture(
     with disk_trouble_explained(page):
         write_page(picture, measured, page)
     if as_json:
-        sys.stdout.write(json.dumps(_as_json(picture, measured), indent=2, allow_nan=False) + "\n")
+        sys.stdout.write(json.dumps(_as_json(path, picture, measured), indent=2, allow_nan=False) + "\n")
         return
     if quiet:
         return
@@ -78,7 +78,7 @@ def _window(text: str | None) -> Window | None:
     return left, top, right, bottom
 
 
-def _as_json(picture: Micrograph, measured: Measured) -> dict[str, Any]:
+def _as_json(path: Path, picture: Micrograph, measured: Measured) -> dict[str, Any]:
     """Give what was measured in SI: meters, and degrees for directions."""
 
     def bounds(interval: Interval) -> list[float]:
@@ -106,6 +106,7 @@ def _as_json(picture: Micrograph, measured: Measured) -> dict[str, Any]:
         },
         "coverage": measured.coverage,
         "ends": measured.ends,
+        "picture": str(path),
         "pixel": picture.pixel,
         "blur": measured.blur,
         "streaks": measured.streaks,

@@ -28,12 +28,15 @@ class History:
     thickness : (fibers,) array [m]
     diameter : (fibers,) array [m]
         The one that keeps length and volume.
+    mean_diameter : (fibers,) array [m]
+        Each fiber counted once.
     """
 
     coverage: Floats
     solidity: Floats
     thickness: Floats
     diameter: Floats
+    mean_diameter: Floats
 
     def until(self, coverage: float) -> int:
         """Index of the fiber that ends a mat which stops at this coverage."""
@@ -74,4 +77,5 @@ def history(mat: Mat) -> History:
         solidity=volume / (mat.slab.face_area * top),
         thickness=top,
         diameter=np.sqrt(4.0 * volume / (math.pi * np.cumsum(length))),
+        mean_diameter=np.cumsum(2.0 * mat.radius) / np.arange(1, mat.fibers + 1),
     )

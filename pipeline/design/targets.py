@@ -44,7 +44,7 @@ def readable(quantity: str, value: float) -> str:
     ('50 um', '8 %', '99.975 %')
     """
     match quantity:
-        case "thickness" | "spacing":
+        case "thickness" | "spacing" | "fiber_diameter":
             return f"{value * 1e6:.4g} um"
         case "solidity":
             return f"{value * 100:.4g} %"
@@ -54,6 +54,8 @@ def readable(quantity: str, value: float) -> str:
             return f"{value * 100:.{digits}f}".rstrip("0").rstrip(".") + " %"
         case "pressure_drop":
             return f"{value:.4g} Pa"
+        case "basis_weight":
+            return f"{value * 1e3:.4g} g/m^2"
     return f"{value:.4g}"
 
 

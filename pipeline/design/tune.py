@@ -28,6 +28,23 @@ _STEPS_AWAY = 3
 _BY_AMOUNT = ("coverage", "count", "thickness", "pressure_drop", "efficiency")
 
 
+class OutOfReach(CaseError):  # noqa: N818 (it names what is the case, as StopIteration does)
+    """A second target that no slope and spacing meets.
+
+    Parameters
+    ----------
+    message : str
+    value : float
+        Where it comes closest [SI].
+    place : tuple of float
+        Relaxation slope [-] and spacing [m] there.
+    """
+
+    def __init__(self, message: str, value: float, place: Place) -> None:
+        super().__init__(message)
+        self.value, self.place = value, place
+
+
 @dataclass(frozen=True, slots=True)
 class Spread:
     """Mean and standard deviation of a quantity over the seeds [SI]; the deviation is that of one mat."""
@@ -108,7 +125,8 @@ def tune(
     Raises
     ------
     CaseError
-        If the mat is not layered, or a target is out of reach; the message says what is within reach.
+        If the mat is not layered, or a target is out of reach; the message says what is within reach. Where the first
+        target can be met but not the second, it is an `OutOfReach`.
     """
     settings = case.mat
     if not isinstance(settings, LayeredSettings):
@@ -163,7 +181,9 @@ def _solve(search: Search, settings: LayeredSettings, keep: frozenset[str], targ
             if away == _STEPS_AWAY:
                 break
             before = (place, miss)
-    raise CaseError(_out_of_reach(search, target, seen))
+    if not seen:
+        raise CaseError(f"{_amount_out_of_reach(search)}, at any slope and spacing")
+    raise _out_of_reach(search, target, *min(seen)[1:])
 
 
 def _close_in(miss: Callable[[Place], float], first: Place, second: Place) -> Place:
@@ -171,14 +191,14 @@ def _close_in(miss: Callable[[Place], float], first: Place, second: Place) -> Pl
     return between(first, second, float(share))
 
 
-def _out_of_reach(search: Search, target: Target, seen: list[tuple[float, float, Place]]) -> str:
-    if not seen:
-        return f"{_amount_out_of_reach(search)}, at any slope and spacing"
-    _, value, (slope, spacing) = min(seen)
-    return (
+def _out_of_reach(search: Search, target: Target, value: float, place: Place) -> OutOfReach:
+    slope, spacing = place
+    return OutOfReach(
         f"{target} is out of reach together with {search.amount}: the closest that these fibers come, on average over "
         f"{len(search.seeds)} mats, is {readable(target.quantity, value)}, at relaxation slope {slope:.4g} and spacing "
-        f"{readable('spacing', spacing)}; ask for that, or change mat.fiber_diameter"
+        f"{readable('spacing', spacing)}; ask for that, or change mat.fiber_diameter",
+        value,
+        place,
     )
 
 

@@ -4,7 +4,9 @@
 
 import math
 
-from pipeline.micrograph.laws import DiameterLaw
+from pipeline.mat.case_lines import table_lines
+from pipeline.mat.settings import Isotropic, Lognormal, Mixture, Normal, Part, VonMises
+from pipeline.micrograph.laws import DiameterLaw, OrientationLaw
 from pipeline.micrograph.measure import Measured
 
 _DIAMETERS_ACROSS = 30
@@ -24,10 +26,9 @@ def case_of(measured: Measured, origin: str) -> str:
     -------
     str
         A picture tells neither how much mat there is nor how dense it is: coverage and relaxation slope are the ones of
-        ``fibertwin tune`` and of the reader.
+        ``fibertwin twin`` and of the reader.
     """
     mean = measured.mean
-    side = _rounded(_DIAMETERS_ACROSS * measured.length_mean * 1e6)
     lines = [
         f"# The mat of a micrograph ({' '.join(origin.split())}): {measured.fibers} fibers, mean diameter "
         f"{mean.value * 1e6:.4g} um ({mean.low * 1e6:.4g} to {mean.high * 1e6:.4g}, 95 %).",
@@ -35,15 +36,15 @@ def case_of(measured: Measured, origin: str) -> str:
         "",
         "[mat]",
         'generator = "layered"',
-        f'side = "{side:g} um"',
-        "relaxation_slope = 0.15   # a picture does not tell: fibertwin tune finds it from what was measured",
+        f'side = "{side_for(measured.length_mean) * 1e6:g} um"',
+        "relaxation_slope = 0.15   # a picture does not tell: fibertwin twin finds it from what was measured",
         "seed = 1",
         "",
         "[mat.fiber_diameter]",
-        *_diameters(measured.laws[0]),
+        *table_lines(diameters_of(measured.laws[0])),
         "",
         "[mat.orientation]",
-        *_directions(measured),
+        *table_lines(orientation_of(measured.orientation)),
         "",
         "[mat.stop]",
         "coverage = 2   # a picture does not tell: state the basis weight's, or a thickness",
@@ -55,42 +56,33 @@ def case_of(measured: Measured, origin: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _diameters(law: DiameterLaw) -> list[str]:
+def side_for(diameter: float) -> float:
+    """Give the side of a plan [m] that has room for enough fibers of a mean diameter [m], rounded up to two digits."""
+    side = _DIAMETERS_ACROSS * diameter * 1e6
+    step = 10.0 ** (math.floor(math.log10(side)) - 1)
+    return 1e-6 * step * math.ceil(side / step)
+
+
+def diameters_of(law: DiameterLaw) -> Normal | Lognormal | Mixture:
+    """Give a law of diameters as a mat's settings."""
     p = law.parameters
     match law.name:
         case "normal":
-            return ['distribution = "normal"', f'mean = "{_um(p["mean"])}"', f'std = "{_um(p["std"])}"']
+            return Normal(mean=p["mean"], std=p["std"])
         case "lognormal":
-            return [
-                'distribution = "lognormal"',
-                f'median = "{_um(p["median"])}"',
-                f"geometric_std = {p['geometric_std']:.4g}",
-            ]
-    kinds = ((p["share"], "1"), (1.0 - p["share"], "2"))
-    parts = [
-        f'    {{ weight = {share:.4g}, diameter = {{ distribution = "lognormal", median = "{_um(p["median_" + k])}", '
-        f"geometric_std = {max(p['geometric_std_' + k], 1.001):.4g} }} }},"
-        for share, k in kinds
-    ]
-    return ['distribution = "mixture"', "parts = [", *parts, "]"]
+            return _lognormal(p["median"], p["geometric_std"])
+    thin = Part(weight=p["share"], diameter=_lognormal(p["median_1"], p["geometric_std_1"]))
+    thick = Part(weight=1.0 - p["share"], diameter=_lognormal(p["median_2"], p["geometric_std_2"]))
+    return Mixture(parts=(thin, thick))
 
 
-def _directions(measured: Measured) -> list[str]:
-    law = measured.orientation
+def _lognormal(median: float, geometric_std: float) -> Lognormal:
+    # settings take no law without any spread
+    return Lognormal(median=median, geometric_std=max(geometric_std, 1.001))
+
+
+def orientation_of(law: OrientationLaw) -> Isotropic | VonMises:
+    """Give a law of directions as a mat's settings."""
     if law.law == "isotropic":
-        return ['law = "isotropic"']
-    return [
-        'law = "von_mises"',
-        f'axis = "{law.axis:.1f} degree"',
-        f"concentration = {law.concentration:.4g}",
-    ]
-
-
-def _um(length: float) -> str:
-    return f"{length * 1e6:.4g} um"
-
-
-def _rounded(length: float) -> float:
-    """Round up to two digits."""
-    step = 10.0 ** (math.floor(math.log10(length)) - 1)
-    return math.ceil(length / step) * step
+        return Isotropic()
+    return VonMises(axis=round(law.axis, 1), concentration=law.concentration)
