@@ -182,7 +182,8 @@ def quality(
     *,
     limits: Path | None = None,
     report: Path | None = None,
-    scene: Path | None = None,
+    html: Path | None = None,
+    scene: Annotated[Path | None, Parameter(show=False)] = None,
     fail_on: Literal["warn", "fail"] = "warn",
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
     quiet: Annotated[bool, Parameter(negative="")] = False,
@@ -201,8 +202,8 @@ def quality(
         A case file whose limits (``[quality]``) are held against the mesh, instead of those of checkMesh.
     report
         Write a page of the mesh into this file (.html): verdict, table, histograms, pictures, worst cells, provenance.
-    scene
-        Write the mesh into this file (.html) to turn it in a browser, offline too.
+    html
+        Write the mesh into this file (.html) to turn and to cut it in a browser, offline too.
     fail_on
         With ``fail``, a verdict of ``warn`` ends with 0 as well.
     as_json
@@ -212,7 +213,9 @@ def quality(
     """
     from pipeline.cli.judging import judge_mesh
 
-    raise SystemExit(judge_mesh(mesh, found(limits) if limits else None, report, scene, as_json, quiet, fail_on))
+    if scene is not None:
+        raise CaseError("--scene names a view of fibertwin view; the file to turn in a browser is --html FILE")
+    raise SystemExit(judge_mesh(mesh, found(limits) if limits else None, report, html, as_json, quiet, fail_on))
 
 
 @app.command
@@ -618,16 +621,17 @@ def view(run: Path, *, scene: str | None = None, screenshot: Path | None = None,
     run
         The folder of a run, whole or partial.
     scene
-        One view: mat-top, mat-side, duct, cut, close-up, cells, mesh-fibers, flow, flow-slice or worst.
+        One view by its name: mat-top, mat-side, duct, cut, close-up, cells, mesh-fibers, flow, flow-slice or worst.
     screenshot
         Draw the view (duct unless another is named) into this file, png or jpg, instead of opening a window.
     html
-        Write the geometry and the mesh into this file (.html) to turn them in a browser, offline too, instead.
+        Write geometry, mesh, flow and caught particles into this file (.html) to turn and to cut them in a browser,
+        offline too, instead.
     """
-    from pipeline.cli.viewing import view_run, write_scene_of_run
+    from pipeline.cli.viewing import view_run, write_model_of_run
 
     if html is not None:
-        write_scene_of_run(run, html)
+        write_model_of_run(run, html)
     if html is None or screenshot is not None:
         view_run(run, scene, screenshot)
 

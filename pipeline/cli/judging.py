@@ -42,7 +42,7 @@ def judge_mesh(
     path: Path,
     limits: Path | None,
     page: Path | None,
-    scene: Path | None,
+    model: Path | None,
     as_json: bool,
     quiet: bool,
     fail_on: Literal["warn", "fail"] = "warn",
@@ -55,13 +55,13 @@ def judge_mesh(
         if limits is not None and settings is not None:
             source = dataclasses.replace(source, limits=settings, limits_of=f"The limits are those of {limits}")
         report = judge(source.mesh, source.limits, progress)
-        if page or scene:
-            _write_pages(path, source, report, page, scene, progress)
+        if page or model:
+            _write_pages(path, source, report, page, model, progress)
     if as_json:
         sys.stdout.write(json.dumps(dataclasses.asdict(report), indent=2, allow_nan=False) + "\n")
     elif not quiet:
         _show(report)
-        for what, file in (("read it:", page), ("turn it:", scene)):
+        for what, file in (("read it:", page), ("turn it:", model)):
             if file is not None:
                 Console().print(what, file, markup=False, highlight=False, soft_wrap=True)
     return 0 if report.verdict == "warn" and fail_on == "fail" else EXIT_CODES[report.verdict]
@@ -77,23 +77,23 @@ def _source(path: Path) -> _Source:
 
 
 def _write_pages(
-    path: Path, source: _Source, report: QualityReport, page: Path | None, scene: Path | None, progress: Progress
+    path: Path, source: _Source, report: QualityReport, page: Path | None, model: Path | None, progress: Progress
 ) -> None:
     # pages take a second to load what they need, for nobody who wants a table only
     from pipeline.report.page.content import MeshContent, SourceFile
     from pipeline.report.page.mesh_page import write_mesh_page
     from pipeline.report.views.layers import layers_of_mesh
-    from pipeline.report.views.scene_file import write_scene
+    from pipeline.report.views.model_file import write_model
 
     files = tuple(SourceFile(str(file), file.stat().st_size, file_digest(file)) for file in source.files)
     content = MeshContent(path, source.mesh, report, source.limits, source.limits_of, files)
     if page is not None:
         with disk_trouble_explained(page):
             write_mesh_page(content, page, progress)
-    if scene is not None:
-        progress("page: scene")
-        with disk_trouble_explained(scene):
-            write_scene(layers_of_mesh(content), str(path), scene, flow=False)
+    if model is not None:
+        progress("page: model to turn")
+        with disk_trouble_explained(model):
+            write_model(layers_of_mesh(content), str(path), model, flow=False)
 
 
 def _show(report: QualityReport) -> None:

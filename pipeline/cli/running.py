@@ -92,5 +92,5 @@ def _next_steps(folder: Path) -> list[str]:
     elif vtk.is_dir():
         steps.append(f"  look at it: paraview {next(vtk.glob('*.vtm'), vtk)}")
     if (folder / "mat").is_dir():
-        steps.append(f"  turn it:    fibertwin view {folder}   (or --html scene.html, for any browser)")
+        steps.append(f"  turn it:    fibertwin view {folder}   (or --html model.html, for any browser)")
     return steps

@@ -55,10 +55,10 @@ def view_run(folder: Path, scene: str | None, screenshot: Path | None) -> None:
         show(subject, there, scene, f"fibertwin: {folder}")
 
 
-def write_scene_of_run(folder: Path, path: Path) -> None:
-    """Write what a run has as a scene for a browser."""
+def write_model_of_run(folder: Path, path: Path) -> None:
+    """Write what a run has as a model to turn in a browser."""
     from pipeline.report.views.layers import layers_of_run
-    from pipeline.report.views.scene_file import write_scene
+    from pipeline.report.views.model_file import write_model
 
     out = Console()
     with listening(out, False) as progress:
@@ -67,7 +67,7 @@ def write_scene_of_run(folder: Path, path: Path) -> None:
             raise StageError(_NOTHING.format(folder))
         progress("collecting surfaces")
         with disk_trouble_explained(path):
-            write_scene(layers_of_run(content), content.name, path)
+            write_model(layers_of_run(content), content.name, path)
     size = path.stat().st_size / 1e6
     out.print(f"{path} ({size:.1f} MB; open it in a browser)", markup=False, highlight=False, soft_wrap=True)
 

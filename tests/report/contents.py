@@ -18,6 +18,7 @@ from pipeline.line.stages import LINE
 from pipeline.mat.generate import generate
 from pipeline.mat.measures import measure
 from pipeline.mat.settings import Constant, LayeredSettings, Stop
+from pipeline.nouns.capture import Capture, DepthProfile, MostPenetratingSize
 from pipeline.nouns.flow import Solution
 from pipeline.nouns.flow_field import FlowField
 from pipeline.nouns.mesh import FaceMesh
@@ -36,6 +37,17 @@ MAT = LayeredSettings(
 CASE = Case(mat=MAT)
 SECTIONS = ("summary", "mat", "duct", "mesh", "quality", "comparison", "prediction", "provenance")
 SOLUTION = Solution(12.5, 1e-12, 1e-9, 1e-14, 0.001, 1e-6, 400, True, 12.0, 2)
+
+_WORST = MostPenetratingSize(2e-7, 1.9e-7, 2.1e-7, 0.5, True)
+CAPTURE = Capture(
+    particle_diameter=(1e-6, 3e-6), efficiency=(0.6, 0.8), low=(0.2, 0.3), high=(0.9, 0.95), penetration=(0.4, 0.2),
+    released=(5, 5), captured=(3, 4), passed=(2, 1), timed_out=(0, 0), sieved=(0, 0), fiber_efficiency=(0.3, 0.5),
+    single_fiber=(0.5, 0.7), by_mechanism={}, first_row=None, concentration=(None, None),
+    rare_penetration=(None, None), residence_time=(1e-3, 1e-3), figure_of_merit=(0.1, 0.2), pressure_drop=12.5,
+    mechanisms=("interception",), density=1000.0, most_penetrating={"cfd": _WORST, "model": _WORST}, en_1822=None,
+    iso_29463=None, iso_16890={"ePM1": 0.3, "ePM2.5": 0.4, "ePM10": None}, iso_16890_group=None,
+    depth=DepthProfile((0.0, 5e-6, 1e-5), ((1, 2), (3, 1))), seed=1, flow_solver="stokes", stray=0.0,
+)  # fmt: skip
 
 
 def small_mesh() -> FaceMesh:

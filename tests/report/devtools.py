@@ -96,6 +96,12 @@ class Browser:
             assert time.monotonic() < end, f"{expression} did not come true; {self.complaints}"
             time.sleep(0.05)
 
+    def load_again(self) -> None:
+        """Load the page anew, as nobody has touched it."""
+        self.wait_for("document.readyState === 'complete'")
+        self.evaluate("document.body.dataset.state = 'old'")
+        self._call("Page.reload")
+
     def settle(self) -> None:
         """Wait until two frames have been drawn."""
         self.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))")

@@ -25,9 +25,9 @@ from pipeline.report.page.content import MeshContent, SourceFile
 from pipeline.report.page.mesh_page import filled_mesh_page, mesh_sections, subject_of_mesh, write_mesh_page
 from pipeline.report.page.quality_section import unit_of
 from pipeline.report.views.layers import layers_of_mesh
+from pipeline.report.views.model_file import write_model
 from pipeline.report.views.painter import possible
 from pipeline.report.views.render import Pictures
-from pipeline.report.views.scene_file import write_scene
 from tests.cli.conftest import Fibertwin
 from tests.cli.conftest import fibertwin as fibertwin  # the fixture
 from tests.cli.test_quality import good_mesh
@@ -145,8 +145,8 @@ def test_no_script_of_a_stranger_runs_in_a_browser(mesh: FaceMesh, tmp_path: Pat
     patches = (Patch(name, mesh.patches[0].start, mesh.patches[0].count), *mesh.patches[1:])
     evil = content(FaceMesh(mesh.points, mesh.corners, mesh.offsets, mesh.owner, mesh.neighbour, mesh.cells, patches))
     (tmp_path / "page.html").write_text(filled_mesh_page(evil, mesh_sections(evil), Pictures()), encoding="utf-8")
-    write_scene(layers_of_mesh(evil), "a scene", tmp_path / "scene.html")
-    for file, title in (("page.html", "some/mesh.vtu · fibertwin"), ("scene.html", "a scene · fibertwin")):
+    write_model(layers_of_mesh(evil), "a model", tmp_path / "model.html")
+    for file, title in (("page.html", "some/mesh.vtu · fibertwin"), ("model.html", "a model · fibertwin")):
         with Browser(tmp_path / file, tmp_path / f"{file}-profile") as browser:
             browser.wait_for("document.readyState === 'complete'")
             browser.wait_for(f"document.body.textContent.includes({json.dumps(name)})")

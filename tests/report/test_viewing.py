@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from pipeline.cli.viewing import view_run, write_scene_of_run
+from pipeline.cli.viewing import view_run, write_model_of_run
 from pipeline.errors import CaseError, StageError
 from pipeline.line.run import run
 from tests.report.contents import CASE
@@ -51,12 +51,12 @@ def test_a_machine_without_opengl_is_told_what_to_install(
     assert not (tmp_path / "a.png").exists()
 
 
-def test_a_scene_is_written_where_it_is_asked_for(
+def test_a_model_is_written_where_it_is_asked_for(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    write_scene_of_run(folder, tmp_path / "new/scene.html")
-    assert "scene.html (0." in capsys.readouterr().out
-    assert "</html>" in (tmp_path / "new/scene.html").read_text(encoding="utf-8")
+    write_model_of_run(folder, tmp_path / "new/model.html")
+    assert "model.html (0." in capsys.readouterr().out
+    assert "</html>" in (tmp_path / "new/model.html").read_text(encoding="utf-8")
     (tmp_path / "case.json").write_text((folder / "case.json").read_text())
     with pytest.raises(StageError, match="has no mat yet"):
-        write_scene_of_run(tmp_path, tmp_path / "scene.html")
+        write_model_of_run(tmp_path, tmp_path / "model.html")

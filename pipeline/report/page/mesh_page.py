@@ -158,7 +158,7 @@ def _steps(content: MeshContent) -> list[Step]:
             "Hold it against limits of your own: those of a case file's [quality].",
             f"fibertwin quality {path} --limits CASE",
         ),
-        Step("Turn the mesh in a browser.", f"fibertwin quality {path} --scene scene.html"),
+        Step("Turn the mesh in a browser.", f"fibertwin quality {path} --html model.html"),
         Step("Give every figure to a program.", f"fibertwin quality {path} --json"),
     ]
 

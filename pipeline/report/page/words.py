@@ -197,7 +197,7 @@ def steps(content: Results) -> list[Step]:
     if content.get(Mat) is not None:
         found.append(Step("Turn the geometry and the mesh in a window.", f"fibertwin view {folder}"))
         found.append(
-            Step("Send them as one file that turns in any browser.", f"fibertwin view {folder} --html scene.html")
+            Step("Send them as one file that turns in any browser.", f"fibertwin view {folder} --html model.html")
         )
     if (content.folder / "solve" / "flow.vtu").is_file():
         found.append(Step("Open velocity and pressure in ParaView.", f"paraview {folder}/solve/flow.vtu"))

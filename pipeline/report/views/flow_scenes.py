@@ -23,6 +23,7 @@ _EIGHT = np.array(
 _TETRAHEDRON = 10  # VTK's number of the cell
 _SPEED_COLORS, _PRESSURE_COLORS = "plasma", "viridis"
 _LINES = 12  # streamlines along each side of the inlet
+_LOUD = 99.5  # percentile of the speed at which colors end
 _SLOWEST = 1e-5  # of the face velocity at which a streamline ends
 
 
@@ -47,8 +48,8 @@ def _at_nodes(field: FlowField) -> Floats:
     return pressure
 
 
-def draw_streamlines(plotter: "pv.Plotter", field: FlowField, fibers: "pv.PolyData") -> None:
-    """Draw streamlines from a grid of points on the inlet, colored by speed, between the fibers."""
+def streamlines_between(field: FlowField) -> "pv.PolyData":
+    """Give streamlines from a grid of points on the inlet, in micrometers, with their speed [cm/s]."""
     import pyvista as pv
 
     grid = linear_grid(field)
@@ -56,8 +57,7 @@ def draw_streamlines(plotter: "pv.Plotter", field: FlowField, fibers: "pv.PolyDa
     share = (np.arange(_LINES) + 0.5) / _LINES
     x, y = np.meshgrid(x0 + share * (x1 - x0), y0 + share * (y1 - y0))
     seeds = pv.PolyData(np.column_stack([x.ravel(), y.ravel(), np.full(x.size, z0 + 1e-3 * (z1 - z0))]))
-    fastest = float(np.percentile(grid.point_data["speed"], 99.5))
-    lines = grid.streamlines_from_source(
+    return grid.streamlines_from_source(
         seeds,
         vectors="velocity",
         integration_direction="forward",
@@ -66,7 +66,14 @@ def draw_streamlines(plotter: "pv.Plotter", field: FlowField, fibers: "pv.PolyDa
         max_step_length=0.5,
         terminal_speed=_SLOWEST * float(np.abs(field.velocity).max()),
     )
-    tubes = lines.tube(radius=0.0028 * float(np.linalg.norm([x1 - x0, y1 - y0, z1 - z0])), n_sides=8)
+
+
+def draw_streamlines(plotter: "pv.Plotter", field: FlowField, fibers: "pv.PolyData") -> None:
+    """Draw streamlines, colored by speed, between the fibers."""
+    lines = streamlines_between(field)
+    fastest = float(np.percentile(lines.point_data["speed"], _LOUD))
+    low, high = field.positions.min(axis=0) * MICRO, field.positions.max(axis=0) * MICRO
+    tubes = lines.tube(radius=0.0028 * float(np.linalg.norm(high - low)), n_sides=8)
     plotter.add_mesh(fibers, color="#d8d3c8", smooth_shading=True, split_sharp_edges=True, ambient=0.25)
     plotter.add_mesh(
         tubes, scalars="speed", cmap=_SPEED_COLORS, clim=[0.0, fastest], scalar_bar_args=_bar("speed [cm/s]")

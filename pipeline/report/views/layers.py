@@ -1,4 +1,4 @@
-"""What an interactive scene holds: surfaces to show and hide, outlines, and no more triangles than a page bears."""
+"""What a model to turn in a browser holds: surfaces, outlines, cells, and no more triangles than a page bears."""
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
@@ -9,24 +9,27 @@ import numpy as np
 
 from pipeline.analytics.tables.rows import length
 from pipeline.geometry.box import Box
-from pipeline.geometry.sections import fan, section
+from pipeline.geometry.sections import fan
 from pipeline.line.results import Results
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.fibers import Mat
+from pipeline.nouns.flow import Solution
+from pipeline.nouns.flow_field import FlowField
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.patches import FIBERS, INLET, OUTLET
 from pipeline.nouns.surface import Surface
 from pipeline.report.page.content import MeshContent
 from pipeline.report.views import drawing
-from pipeline.report.views.drawing import near_the_middle
 from pipeline.report.views.mesh_scenes import axis_of_sections
+from pipeline.report.views.model_cells import ModelCells, cells_of
+from pipeline.report.views.model_flow import NumberField, Particles, Streamlines, caught, drag, streamlines_of
 from pipeline.report.views.scenes import tubes_of
 
 LARGEST = 300_000
-"""Triangles that a scene holds at most: 8 MB of text."""
+"""Triangles that a model holds at most: 8 MB of text."""
 _SEE_THROUGH, _SOLID = 0.3, 1.0
-_MIDDLE = "cells at the middle plane {}"
+_OUTWARD, _INWARD = 1, -1
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -49,6 +52,8 @@ class Layer:
         Whether it is seen at first.
     label : str
         What a triangle's number counts, as in "fiber 7"; where it is empty a click tells the layer's name.
+    solid : int
+        1 or -1 where the triangles enclose something solid, and are counterclockwise seen from outside or inside it.
     """
 
     name: str
@@ -60,41 +65,75 @@ class Layer:
     opacity: float = _SOLID
     shown: bool = True
     label: str = ""
+    solid: int = 0
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Model:
-    """All that a scene shows: layers, outlines by name, and what was left out of them, in words."""
+    """All that a model to turn shows.
+
+    Parameters
+    ----------
+    layers : tuple of Layer
+    outlines : dict of str to Box
+    note : str
+        What was left out, in words.
+    cells : ModelCells, optional
+        What a plane cuts.
+    axis : int
+        Across which the plane stands at first.
+    streamlines : Streamlines, optional
+    particles : tuple of Particles
+    number_fields : tuple of NumberField
+        What layers with a label can be colored by beside their number.
+    """
 
     layers: tuple[Layer, ...]
     outlines: dict[str, Box]
     note: str
+    cells: ModelCells | None = None
+    axis: int = 0
+    streamlines: Streamlines | None = None
+    particles: tuple[Particles, ...] = ()
+    number_fields: tuple[NumberField, ...] = ()
 
 
 def layers_of_run(content: Results) -> Model:
-    """Give what a run has: its fibers, the patches of its duct, and a section of its cells.
+    """Give what a run has: its fibers, the patches of its duct, its cells, its flow and the particles that it caught.
 
     The content must have a mat at least.
     """
     mat, mesh, domain = content.read(Mat), content.get(FaceMesh), content.get(FluidDomain)
+    flow, solution = content.get(FlowField), content.get(Solution)
     layers = [_fibers(content)]
     if mesh is not None:
         layers += _patches(mesh, {FIBERS})
-        layers.append(_section(mesh, 0, mat.slab))
     elif domain is not None:
         layers += _sides(domain)
     outlines = {"slab of the mat": mat.slab}
     if domain is not None:
         outlines["duct"] = domain.box
-    return limited(layers, outlines)
+    return replace(
+        _with_cells(limited(layers, outlines), mesh, flow),
+        streamlines=streamlines_of(flow) if flow is not None else None,
+        particles=caught(content),
+        number_fields=drag(solution) if solution is not None else (),
+    )
 
 
 def layers_of_mesh(content: MeshContent) -> Model:
-    """Give what a mesh alone has: its patches, and a section of its cells."""
+    """Give what a mesh alone has: its patches and its cells."""
     mesh = content.mesh
     layers = [replace(layer, opacity=_SOLID, shown=True) for layer in _patches(mesh, set())]
-    layers.append(_section(mesh, axis_of_sections(mesh), drawing.extent(mesh)))
-    return limited(layers, {"extent": drawing.extent(mesh)})
+    model = limited(layers, {"extent": drawing.extent(mesh)})
+    return replace(_with_cells(model, mesh, None), axis=axis_of_sections(mesh))
+
+
+def _with_cells(model: Model, mesh: FaceMesh | None, flow: FlowField | None) -> Model:
+    if mesh is None:
+        return model
+    cells = cells_of(mesh, flow)
+    return replace(model, cells=cells, note="; ".join(part for part in (model.note, cells.note) if part))
 
 
 def limited(layers: list[Layer], outlines: dict[str, Box], largest: int = LARGEST) -> Model:
@@ -138,11 +177,12 @@ def _fibers(content: Results) -> Layer:
     if mesh is not None:
         which = mesh.patch(FIBERS)
         points, triangles, edges, face = fan(mesh.points, mesh.corners, mesh.offsets[which.start : which.stop + 1])
-        return Layer(name, points, triangles, edges, mesh.fiber[face], label=label)
+        return Layer(name, points, triangles, edges, mesh.fiber[face], label=label, solid=_INWARD)
     if surface is not None:
-        return Layer(name, surface.points, surface.triangles, _all_edges(surface.triangles), surface.fiber, label=label)
+        edges = _all_edges(surface.triangles)
+        return Layer(name, surface.points, surface.triangles, edges, surface.fiber, label=label, solid=_OUTWARD)
     points, triangles, fiber = tubes_of(content.read(Mat))
-    return Layer(name, points, triangles, _all_edges(triangles), fiber, label=label)
+    return Layer(name, points, triangles, _all_edges(triangles), fiber, label=label, solid=_OUTWARD)
 
 
 def _all_edges(triangles: Ints) -> Ints:
@@ -171,11 +211,3 @@ def _side(name: str, number: int, points: Floats, triangles: Ints, edges: Ints) 
     color = ours.get(name) or "#" + bytes(drawing.colors_by_number(np.array([number]))[0].tolist()).hex()
     numbers = np.full(len(triangles), number)
     return Layer(name, points, triangles, edges, numbers, color, _SEE_THROUGH, shown=name in ours)
-
-
-def _section(mesh: FaceMesh, axis: int, around: Box) -> Layer:
-    place = near_the_middle(around.lower[axis], around.upper[axis])
-    cut = section(mesh.points, mesh.corners, mesh.offsets, mesh.owner, mesh.neighbour, axis, place)
-    # of each triangle the first side is a piece of a cell's outline, the others lead to the cell's middle
-    outline, number = np.full(len(cut.triangles), 0b001), np.zeros(len(cut.triangles), np.int64)
-    return Layer(_MIDDLE.format("xyz"[axis]), cut.points, cut.triangles, outline, number, drawing.CELLS, shown=False)
