@@ -18,7 +18,7 @@ from pipeline.report.views.drawing import BACKGROUND
 from pipeline.report.views.mesh_scenes import MeshSubject
 from pipeline.report.views.painter import possible, trimmed
 from pipeline.report.views.render import Painting, rendering_environment
-from pipeline.report.views.scenes import SCENES, Subject
+from pipeline.report.views.scenes import SCENES, Subject, fiber_surface
 from pipeline.report.views.subject import subject_of
 from tests.report.contents import SOLUTION, still_flow, whole
 from tests.report.pages import read
@@ -33,6 +33,21 @@ def test_everything_can_be_seen_of_a_whole_run() -> None:
     subject = subject_of(whole(still_flow()))
     assert subject is not None
     assert possible(subject) == tuple(SCENES)
+
+
+def test_ends_of_fibers_at_the_sides_of_the_plan_are_gray_and_nothing_else_is() -> None:
+    content = whole()
+    subject = subject_of(content)
+    assert subject is not None
+    skin = fiber_surface(subject)
+    color = np.asarray(skin.cell_data["color"]).astype(int)
+    gray = np.ptp(color, axis=1) < 12
+    slab = content.read(Mat).slab
+    middle = np.asarray(skin.cell_centers().points) * 1e-6
+    gap = np.minimum(middle[:, :2] - slab.lower[:2], np.subtract(slab.upper[:2], middle[:, :2])).min(axis=1)
+    # three fibers from side to side have six ends
+    assert gray.sum() >= 6
+    np.testing.assert_array_equal(gray, gap < 1e-11)
 
 
 def test_pictures_lose_their_empty_margin() -> None:

@@ -48,6 +48,8 @@ if TYPE_CHECKING:
     import pyvista as pv
 
 
+_CUT_END = (206, 211, 217)
+_FLUSH = 1e-6  # of the plan: how near to its side the end of a fiber that was cut there lies
 _CLOSE = 5.0  # fiber radii from the middle of the close-up to its upper and lower end
 
 
@@ -71,14 +73,14 @@ def _fiber_faces(mesh: FaceMesh) -> Floats:
 
 def mat_from_above(plotter: "pv.Plotter", subject: Subject) -> None:
     """Draw the mat from downstream: x to the right, y up."""
-    _add_fibers(plotter, _fiber_surface(subject))
+    _add_fibers(plotter, fiber_surface(subject))
     add_outline(plotter, _slab(subject))
     look(plotter, _slab(subject), towards=(0, 0, -1), up=(0, 1, 0))
 
 
 def mat_from_the_side(plotter: "pv.Plotter", subject: Subject) -> None:
     """Draw the mat along y: x to the right, thickness up."""
-    _add_fibers(plotter, _fiber_surface(subject))
+    _add_fibers(plotter, fiber_surface(subject))
     add_outline(plotter, _slab(subject))
     look(plotter, _slab(subject), towards=(0, 1, 0), up=(0, 0, 1))
 
@@ -90,7 +92,7 @@ def mat_in_its_duct(plotter: "pv.Plotter", subject: Subject) -> None:
     domain = subject.domain
     assert domain is not None
     box = scaled(domain.box, MICRO)
-    _add_fibers(plotter, _fiber_surface(subject))
+    _add_fibers(plotter, fiber_surface(subject))
     plotter.add_mesh(pv.Box(bounds(box)), color=AIR, opacity=0.13, lighting=False)
     add_outline(plotter, box, width=2.0)
     add_outline(plotter, _slab(subject), width=1.0)
@@ -161,7 +163,7 @@ def fibers_of_the_mesh(plotter: "pv.Plotter", subject: Subject) -> None:
 def worst_cells(plotter: "pv.Plotter", subject: Subject) -> None:
     """Draw where the worst cells and faces beyond a limit are, as dots among the fibers."""
     assert subject.worst is not None
-    plotter.add_mesh(_fiber_surface(subject), color="#aab4bf", opacity=0.3)
+    plotter.add_mesh(fiber_surface(subject), color="#aab4bf", opacity=0.3)
     add_outline(plotter, _slab(subject))
     add_balls(plotter, subject.worst * MICRO, 0.012 * MICRO * max(subject.mat.slab.size))
     look_aslant(plotter, _slab(subject))
@@ -204,7 +206,8 @@ SCENES = {
 """Every view by its name."""
 
 
-def _fiber_surface(subject: Subject) -> "pv.PolyData":
+def fiber_surface(subject: Subject) -> "pv.PolyData":
+    """Give the fibers' surface with a color per fiber, and gray where the plan's sides cut it."""
     import pyvista as pv
 
     surface = subject.surface
@@ -212,8 +215,20 @@ def _fiber_surface(subject: Subject) -> "pv.PolyData":
         tubes_of(subject.mat) if surface is None else (surface.points, surface.triangles, surface.fiber)
     )
     skin = pv.PolyData.from_regular_faces(points * MICRO, triangles)
-    skin.cell_data["color"] = colors_by_number(fiber)
+    color = colors_by_number(fiber)
+    color[_on_a_side(points[triangles], subject.mat.slab)] = _CUT_END
+    skin.cell_data["color"] = color
     return skin
+
+
+def _on_a_side(triangles: Floats, slab: Box) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
+    """Tell the triangles, (n, 3, 3) array [m], that lie in a side of the plan: ends of fibers, cut flush.
+
+    Fibers that leave side by side share one flat end, whose triangles wear the number of either.
+    """
+    ends = np.array([slab.lower[:2], slab.upper[:2]])
+    close = np.abs(triangles[:, :, None, :2] - ends) < _FLUSH * float(np.diff(ends, axis=0).max())
+    return np.asarray(close.all(axis=1).any(axis=(1, 2)))
 
 
 def tubes_of(mat: Mat) -> tuple[Floats, Ints, Ints]:
