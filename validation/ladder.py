@@ -12,8 +12,8 @@ from pipeline.errors import CaseError
 from pipeline.line.run import Run, run
 from pipeline.mat.settings import ArraySettings
 from pipeline.nouns.fibers import Mat
-from pipeline.nouns.flow import Solution
-from pipeline.nouns.mesh_measures import TetmeshMeasures
+from pipeline.nouns.flow import Solution, SolvingCost
+from pipeline.nouns.mesh_measures import MeshingCost, TetmeshMeasures
 from pipeline.progress import Progress, silent
 from pipeline.study.convergence import Convergence, convergence
 from validation.exact import hexagonal_drag, square_drag
@@ -156,8 +156,8 @@ def climb(case: Case, folder: Path, progress: Progress = silent) -> Rung:
         mass_balance=solution.mass_balance_error,
         iterations=solution.iterations,
         converged=solution.converged,
-        mesh_seconds=measures.mesher_seconds,
-        solve_seconds=solution.seconds,
+        mesh_seconds=this.read(MeshingCost).seconds,
+        solve_seconds=this.read(SolvingCost).seconds,
     )
 
 

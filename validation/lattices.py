@@ -8,8 +8,8 @@ from pathlib import Path
 
 from pipeline.case import Case, validate
 from pipeline.line.run import Run, run
-from pipeline.nouns.flow import Solution
-from pipeline.nouns.mesh_measures import TetmeshMeasures
+from pipeline.nouns.flow import Solution, SolvingCost
+from pipeline.nouns.mesh_measures import MeshingCost, TetmeshMeasures
 from pipeline.progress import Progress, silent
 
 EXACT = {
@@ -174,7 +174,7 @@ def climb_lattice(
         force_balance=solution.force_balance_error,
         mass_balance=solution.mass_balance_error,
         iterations=solution.iterations,
-        seconds=measures.mesher_seconds + solution.seconds,
+        seconds=results.read(MeshingCost).seconds + results.read(SolvingCost).seconds,
     )
 
 

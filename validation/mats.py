@@ -15,8 +15,8 @@ from pipeline.line.run import Run, run
 from pipeline.mat.settings import LayeredSettings
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.fibers import Mat
-from pipeline.nouns.flow import Solution
-from pipeline.nouns.mesh_measures import TetmeshMeasures
+from pipeline.nouns.flow import Solution, SolvingCost
+from pipeline.nouns.mesh_measures import MeshingCost, TetmeshMeasures
 from pipeline.progress import Progress, silent
 
 SEEDS = (1, 2, 3)
@@ -109,8 +109,8 @@ def solved(case: Case, folder: Path, progress: Progress = silent) -> MatRun:
         mass_balance=solution.mass_balance_error,
         iterations=solution.iterations,
         converged=solution.converged,
-        mesh_seconds=measures.mesher_seconds,
-        solve_seconds=solution.seconds,
+        mesh_seconds=this.read(MeshingCost).seconds,
+        solve_seconds=this.read(SolvingCost).seconds,
     )
 
 

@@ -48,15 +48,13 @@ class Solution:
     permeability : float [m2]
         Darcy's, over the mat's thickness: viscosity x velocity x thickness / pressure drop.
     force_balance_error : float [-]
-        Drag over (pressure drop x face area), less 1; the walls and the change of momentum take no part.
+        Drag over (pressure drop x face area), less 1: nothing else holds the air back where the sides are planes of
+        symmetry. The engine `stokes` adds to the drag what momentum the air gained on its way.
     mass_balance_error : float [-]
         Flow out over flow in, less 1.
     iterations : int
     converged : bool
         Whether the pressure drop had settled when the run ended.
-    seconds : float [s]
-        Wall time of all runs that led here.
-    cores : int
     effective_fiber_diameter : float [m], optional
         Diameter for which the model the user chose gives this pressure drop at the mesh's solidity.
     f_star : float [-], optional
@@ -71,10 +69,16 @@ class Solution:
         With either wall; None where that was not solved.
     other_wall : str, optional
         How the drop with the other wall was found.
+    inertia : bool, optional
+        Whether the air had inertia in the equations that were solved; None where that is not known.
+    pressure_drop_creeping : float [Pa], optional
+        Without inertia, with the wall as it is; None where only one of the two was solved.
     drag_per_fiber : tuple of float [N]
         Along the flow, in the order of ``mat/fibers.csv``; empty where the engine does not tell.
     reynolds : float [-], optional
         Face velocity x mean fiber diameter x density over viscosity.
+    mach : float [-], optional
+        Face velocity over the speed of sound.
     knudsen : float [-], optional
         Mean free path over mean fiber radius.
     regime : str, optional
@@ -91,8 +95,6 @@ class Solution:
     mass_balance_error: float
     iterations: int
     converged: bool
-    seconds: float
-    cores: int
     effective_fiber_diameter: float | None = None
     f_star: float | None = None
     engine: str = "openfoam"
@@ -101,9 +103,70 @@ class Solution:
     pressure_drop_no_slip: float | None = None
     pressure_drop_slip: float | None = None
     other_wall: str | None = None
+    inertia: bool | None = None
+    pressure_drop_creeping: float | None = None
     drag_per_fiber: tuple[float, ...] = ()
     reynolds: float | None = None
+    mach: float | None = None
     knudsen: float | None = None
     regime: str | None = None
     wall_edges: int | None = None
     straight_wall_edges: int | None = None
+
+    @property
+    def inertia_words(self) -> str:
+        """What was done about inertia."""
+        if not self.inertia:
+            return "solved as creeping flow: inertia would change less than 0.5 %"
+        if self.pressure_drop_creeping is None:
+            return "solved with inertia"
+        return (
+            f"solved with inertia, which adds {self.pressure_drop / self.pressure_drop_creeping - 1.0:.2g} of the drop"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class SolvingCost:
+    """What a solution cost: kept beside it, since equal solutions differ in it.
+
+    Parameters
+    ----------
+    seconds : float [s]
+        Wall time of all runs that led to it.
+    cores : int
+        Threads, or processes, that shared the work.
+    peak_memory : int [byte], optional
+        Most that the process held; None where others solved.
+    """
+
+    seconds: float
+    cores: int
+    peak_memory: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """A pressure drop on its way to where it settled.
+
+    Parameters
+    ----------
+    fiber_wall : str
+        What the air does on the fibers: ``slip`` or ``no_slip``.
+    iterations : tuple of int
+        At which it was looked at.
+    pressure_drop : tuple of float [Pa]
+    """
+
+    fiber_wall: str
+    iterations: tuple[int, ...]
+    pressure_drop: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        require(len(self.iterations) == len(self.pressure_drop), "not every iteration has its pressure drop")
+
+
+@dataclass(frozen=True, slots=True)
+class Settling:
+    """How a solution settled: one curve for each wall that was solved, in the order of solving."""
+
+    curves: tuple[Curve, ...]

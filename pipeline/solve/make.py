@@ -5,6 +5,7 @@
 import math
 import os
 import shutil
+import time
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,16 +14,18 @@ from pipeline.analytics.formulas.slip import knudsen, regime, slip_length
 from pipeline.analytics.models.pressure_models import pressure_model
 from pipeline.line import store
 from pipeline.line.places import kept_folder
+from pipeline.machine import peak_memory
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.exports import OpenFoamCase
-from pipeline.nouns.flow import Solution
+from pipeline.nouns.flow import Settling, Solution, SolvingCost
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.surface import Surface
 from pipeline.openfoam.environment import SOLVER, openfoam_missing
 from pipeline.progress import Progress
 from pipeline.solve.bed import Bed
-from pipeline.solve.running import solve
+from pipeline.solve.regime import mach, refuse_regime, reynolds
+from pipeline.solve.running import seconds_spent, settling, solve
 
 if TYPE_CHECKING:
     from pipeline.line.results import Results
@@ -41,8 +44,10 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
         fiber_length=_parallel_length(results, surface, comparison),
     )
     engine = _by_openfoam if results.case.solve.engine == "openfoam" else _by_elements
-    solution = engine(results, into, bed, progress)
+    solution, settled, cost = engine(results, into, bed, progress)
     store.write_json(into / "solution.json", solution)
+    store.write_json(into / "settling.json", settled)
+    store.write_json(into / "cost.json", cost)
     store.write_json(into / "comparison.json", {**asdict(comparison), "cfd": solution.pressure_drop})
     return {
         "pressure_drop": solution.pressure_drop,
@@ -52,12 +57,15 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     }
 
 
-def _by_elements(results: "Results", into: Path, bed: Bed, progress: Progress) -> Solution:
+def _by_elements(
+    results: "Results", into: Path, bed: Bed, progress: Progress
+) -> tuple[Solution, Settling, SolvingCost]:
     from pipeline.solve.stokes.flow_file import write_flow
     from pipeline.solve.stokes.solver import solve_stokes
 
+    began = time.monotonic()
     case, flow = results.case, results.case.flow.flow()
-    solution, field = solve_stokes(
+    solution, field, settled = solve_stokes(
         results.read(FaceMesh),
         results.read(FluidDomain),
         flow,
@@ -70,26 +78,35 @@ def _by_elements(results: "Results", into: Path, bed: Bed, progress: Progress) -
     )
     store.save(field, into / "flow.npz")
     write_flow(field, flow.viscosity, into / "flow.vtu")
-    return solution
+    return solution, settled, SolvingCost(time.monotonic() - began, 1, peak_memory())
 
 
-def _by_openfoam(results: "Results", into: Path, bed: Bed, progress: Progress) -> Solution:
+def _by_openfoam(
+    results: "Results", into: Path, bed: Bed, progress: Progress
+) -> tuple[Solution, Settling, SolvingCost]:
     case, flow = results.case, results.case.flow.flow()
+    comparison, wall = results.read(Comparison), case.flow.fiber_wall
+    diameter = comparison.fiber_diameter
+    refuse_regime(flow, diameter, comparison.solidity["mesh"], wall)
     # beside the stage and not in it: a killed run continues from there
     work = kept_folder(results.folder, "solve")
     solution = solve(results.read(OpenFoamCase).folder, work, flow, bed, case.solve.openfoam, progress)
     # not moved: should this process be killed before the stage stands, the solver's run stays where it can go on
     shutil.copytree(work, into / "openfoam", copy_function=_linked)
-    wall, kn = case.flow.fiber_wall, float(knudsen(flow.mean_free_path, results.read(Comparison).fiber_diameter))
-    return replace(
+    kn = float(knudsen(flow.mean_free_path, diameter))
+    whole = replace(
         solution,
         fiber_wall=wall,
         pressure_drop_no_slip=solution.pressure_drop if wall == "no_slip" else None,
         pressure_drop_slip=solution.pressure_drop if wall == "slip" else None,
-        reynolds=flow.density * flow.face_velocity * results.read(Comparison).fiber_diameter / flow.viscosity,
+        inertia=True,
+        reynolds=reynolds(flow, diameter),
+        mach=mach(flow, flow.face_velocity),
         knudsen=kn,
         regime=regime(kn),
     )
+    cost = SolvingCost(seconds_spent(work), case.solve.openfoam.cores)
+    return whole, settling(work, flow, wall), cost
 
 
 def _linked(source: str, target: str) -> None:

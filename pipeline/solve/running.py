@@ -15,7 +15,7 @@ from pipeline import child_process
 from pipeline.errors import StageError
 from pipeline.line.places import remove, write_text
 from pipeline.nouns.arrays import Floats
-from pipeline.nouns.flow import Flow, Solution
+from pipeline.nouns.flow import Curve, Flow, Settling, Solution
 from pipeline.openfoam.environment import openfoam_missing
 from pipeline.openfoam.process import call, started, tail
 from pipeline.progress import Progress, silent
@@ -73,17 +73,23 @@ def solve(
     began = time.monotonic()
     progress("solve: preparing the case")
     _prepare(case, work, settings)
-    before = _seconds_before(work)
+    before = seconds_spent(work)
     command = [program]
     if settings.cores > 1:
         command = ["mpirun", "-np", str(settings.cores), program, "-parallel"]
     try:
         last, settled = _run(command, work, flow, settings, progress)
     finally:
-        seconds = before + time.monotonic() - began
-        write_text(work / _SECONDS, f"{seconds:.3f}")
+        write_text(work / _SECONDS, f"{before + time.monotonic() - began:.3f}")
     cut(work, last)
-    return _solution(work, flow, bed, settled, seconds, settings.cores)
+    return _solution(work, flow, bed, settled)
+
+
+def settling(work: Path, flow: Flow, fiber_wall: str) -> Settling:
+    """Read how the pressure drop of a run settled."""
+    rows = read_back.table(work)
+    drops = [_drop(row, flow) for row in rows]
+    return Settling((Curve(fiber_wall, tuple(int(at) for at in rows[:, 0]), tuple(drops)),))
 
 
 def _prepare(case: Path, work: Path, settings: OpenFoamSettings) -> None:
@@ -123,7 +129,8 @@ def _text(path: Path) -> str:
         return ""
 
 
-def _seconds_before(work: Path) -> float:
+def seconds_spent(work: Path) -> float:
+    """Wall time [s] of all runs that were kept in a folder."""
     try:
         return float(_text(work / _SECONDS))
     except ValueError:
@@ -253,7 +260,7 @@ def _progress(progress: Progress, log: Path, rows: Floats, flow: Flow, settings:
     )
 
 
-def _solution(work: Path, flow: Flow, bed: Bed, settled: bool, seconds: float, cores: int) -> Solution:
+def _solution(work: Path, flow: Flow, bed: Bed, settled: bool) -> Solution:
     row = read_back.table(work)[-1]
     drop = _drop(row, flow)
     # the third number of the force's first vector: along z
@@ -267,8 +274,6 @@ def _solution(work: Path, flow: Flow, bed: Bed, settled: bool, seconds: float, c
         mass_balance_error=_mass_error(row),
         iterations=int(row[0]),
         converged=settled,
-        seconds=seconds,
-        cores=cores,
         effective_fiber_diameter=bed.effective_diameter(flow, drop),
         f_star=bed.f_star(flow, drag),
     )

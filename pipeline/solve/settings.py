@@ -58,7 +58,7 @@ class SolveSettings(BaseModel):
 
     engine: SolverName = Field(
         default="stokes",
-        description='"stokes": second-order elements on curved walls, for creeping flow through tetrahedra, with '
+        description='"stokes": second-order elements on curved walls, for steady flow through tetrahedra, with '
         'nothing to install; "openfoam": OpenFOAM runs the exported case.',
     )
     stokes: StokesSettings | None = Field(default=None, description='Of solve.engine = "stokes".')

@@ -8,7 +8,7 @@ from pipeline.line.stage import Entry, Stage
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.exports import OpenFoamCase
-from pipeline.nouns.flow import Solution
+from pipeline.nouns.flow import Settling, Solution, SolvingCost
 from pipeline.nouns.flow_field import FlowField
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.surface import Surface
@@ -26,10 +26,15 @@ SOLVE = Stage(
     about="The run of the solver.",
     make=Entry("pipeline.solve.make:make"),
     needs=_needs,
-    gives={Solution: "solution.json", FlowField: "flow.npz"},
+    gives={
+        Solution: "solution.json",
+        FlowField: "flow.npz",
+        SolvingCost: "cost.json",
+        Settling: "settling.json",
+    },
     settings=SolveSettings,
     reads=("flow", "mat", "enclosure"),
-    records=("log.*", "*/log.*", "*/fibertwin.*"),
+    records=("cost.json", "settling.json", "log.*", "*/log.*", "*/fibertwin.*"),
     units={"pressure_drop": "Pa", "force_balance_error": "%"},
     obstacle=Entry("pipeline.solve.make:obstacle"),
     asked=True,

@@ -5,7 +5,7 @@
 from typing import TYPE_CHECKING
 
 from pipeline.analytics.tables.rows import length
-from pipeline.nouns.flow import Solution
+from pipeline.nouns.flow import Solution, SolvingCost
 from pipeline.nouns.section import Table
 from pipeline.units import duration
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 def tables(results: "Results") -> tuple[Table, ...]:
     """Give the table of the flow."""
-    return (solution_table(results.read(Solution)),)
+    return (solution_table(results.read(Solution), results.read(SolvingCost)),)
 
 
-def solution_table(solution: Solution) -> Table:
+def solution_table(solution: Solution, cost: SolvingCost) -> Table:
     """Lay a solution out in the units people use."""
     rows = [
         ("pressure drop", f"{solution.pressure_drop:.4g} Pa"),
@@ -30,11 +30,13 @@ def solution_table(solution: Solution) -> Table:
         rows.append(("effective fiber diameter", length(solution.effective_fiber_diameter)))
     if solution.f_star is not None:
         rows.append(("drag per length F*", f"{solution.f_star:.5g}"))
+    if solution.reynolds is not None:
+        rows.append(("fiber Reynolds number", f"{solution.reynolds:.2g}, {solution.inertia_words}"))
     settled = "settled" if solution.converged else f"NOT settled: raise solve.{solution.engine}.max_iterations"
     rows += [
         ("iterations", f"{solution.iterations:,}, {settled}"),
         ("forces balance to", f"{abs(solution.force_balance_error):.2g}"),
         ("mass balances to", f"{abs(solution.mass_balance_error):.2g}"),
-        ("time", f"{duration(solution.seconds)} on {solution.cores} core{'s' if solution.cores > 1 else ''}"),
+        ("time", f"{duration(cost.seconds)} on {cost.cores} core{'s' if cost.cores > 1 else ''}"),
     ]
     return Table("solution", ("", ""), tuple(rows))

@@ -12,8 +12,8 @@ from pipeline.line.run import Run, run
 from pipeline.mat.settings import BoxSettings, LayeredSettings
 from pipeline.nouns.convergence import Contributions, ConvergedDrop, Interval, MeshRung
 from pipeline.nouns.domain import FluidDomain
-from pipeline.nouns.flow import Solution
-from pipeline.nouns.mesh_measures import TetmeshMeasures
+from pipeline.nouns.flow import Solution, SolvingCost
+from pipeline.nouns.mesh_measures import MeshingCost, TetmeshMeasures
 from pipeline.progress import Progress
 from pipeline.study.convergence import convergence
 
@@ -105,6 +105,7 @@ def _rung(case: Case, folder: Path, name: str, progress: Progress) -> MeshRung:
     run(case, folder, "solve", progress=told, without=frozenset({"report"}))
     results = Run(case, folder)
     solution, measures = results.read(Solution), results.read(TetmeshMeasures)
+    seconds = results.read(MeshingCost).seconds + results.read(SolvingCost).seconds
     unit = 2.0 * float(results.read(FluidDomain).radius.mean())
     return MeshRung(
         edge=case.tetmesh.edge,
@@ -113,7 +114,7 @@ def _rung(case: Case, folder: Path, name: str, progress: Progress) -> MeshRung:
         pressure_drop=solution.pressure_drop,
         pressure_drop_no_slip=solution.pressure_drop_no_slip,
         pressure_drop_slip=solution.pressure_drop_slip,
-        seconds=measures.mesher_seconds + solution.seconds,
+        seconds=seconds,
     )
 
 

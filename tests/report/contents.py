@@ -36,7 +36,7 @@ MAT = LayeredSettings(
 )
 CASE = Case(mat=MAT)
 SECTIONS = ("summary", "mat", "duct", "mesh", "quality", "comparison", "prediction", "provenance")
-SOLUTION = Solution(12.5, 1e-12, 1e-9, 1e-14, 0.001, 1e-6, 400, True, 12.0, 2)
+SOLUTION = Solution(12.5, 1e-12, 1e-9, 1e-14, 0.001, 1e-6, 400, True)
 
 _WORST = MostPenetratingSize(2e-7, 1.9e-7, 2.1e-7, 0.5, True)
 CAPTURE = Capture(

@@ -2,6 +2,7 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import dataclasses
 import re
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import pytest
 from pipeline.line.results import Results
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.fibers import Mat
+from pipeline.nouns.flow import Curve, Settling, SolvingCost
 from pipeline.nouns.mat_measures import MatMeasures
 from pipeline.nouns.quality import QualityReport
 from pipeline.progress import silent
@@ -103,6 +105,21 @@ def test_a_solved_flow_is_held_against_every_model(content: Results) -> None:
     davies = content.read(Comparison).models["davies"].mesh
     assert f"{davies / SOLUTION.pressure_drop - 1:+.1%}" in page.text
     assert "solution" in page.values("id")
+
+
+def test_how_a_flow_settled_is_drawn_for_both_walls_and_what_inertia_did_is_told() -> None:
+    looks = (6, 12, 18)
+    settling = Settling((Curve("no_slip", looks, (9.0, 7.6, 7.5)), Curve("slip", looks, (7.0, 6.9, 6.8))))
+    carried = dataclasses.replace(
+        SOLUTION, reynolds=2.0, knudsen=0.01, regime="slip", inertia=True, pressure_drop_creeping=10.0
+    )
+    page = read(html_of(whole(carried, settling, SolvingCost(12.0, 2))))
+    assert any(name.startswith("settling-") for name in page.values("id"))
+    # 12.5 Pa with inertia, 10 without
+    assert any("adds 0.25 of the drop" in text for text in page.text)
+    assert any("12 s on 2 cores" in text for text in page.text)
+    creeping = dataclasses.replace(carried, reynolds=0.002, inertia=False, pressure_drop_creeping=None)
+    assert any("creeping flow" in text for text in read(html_of(whole(creeping))).text)
 
 
 def test_a_page_without_pictures_says_why(content: Results) -> None:

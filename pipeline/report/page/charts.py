@@ -12,7 +12,7 @@ from pipeline.analytics.tables.plots import draw_efficiency, draw_figure_of_meri
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.fibers import Mat
-from pipeline.nouns.flow import Solution
+from pipeline.nouns.flow import Settling, Solution
 from pipeline.nouns.mat_measures import MatMeasures
 from pipeline.nouns.quality import Metric
 from pipeline.quality.table import shown_unit
@@ -189,6 +189,25 @@ def drag_chart(solution: Solution) -> Markup:
         axes.set_xlim(-0.6, len(drags) - 0.4)
 
     return chart("drag-per-fiber", draw)
+
+
+def settling_chart(settling: Settling) -> Markup:
+    """How far the pressure drop was from its last value, against iterations."""
+    names = {"slip": ("slip", BLUE), "no_slip": ("no slip", ORANGE)}
+
+    def draw(axes: "Axes") -> None:
+        for curve in settling.curves:
+            at, drops = np.array(curve.iterations), np.array(curve.pressure_drop)
+            off = 100.0 * np.abs(drops / drops[-1] - 1.0)
+            # the last one is where it settled: nothing that a logarithmic scale could show
+            shown = off > 0.0
+            name, color = names[curve.fiber_wall]
+            axes.semilogy(at[shown], off[shown], "o-", color=color, markersize=3, linewidth=1.2, label=name)
+        axes.set(xlabel="iterations", ylabel="off its last value [%]", title="Settling of the pressure drop")
+        axes.grid(axis="y")
+        axes.legend(frameon=False)
+
+    return chart("settling", draw)
 
 
 def prediction_charts(medium: FilterSettings, flow: FlowSettings) -> list[Markup]:

@@ -12,7 +12,7 @@ from pipeline.line.results import Results
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.convergence import ConvergedDrop, convergence_tables, read_convergence
 from pipeline.nouns.fibers import Mat
-from pipeline.nouns.flow import Solution
+from pipeline.nouns.flow import Settling, Solution, SolvingCost
 from pipeline.nouns.mat_measures import MatMeasures
 from pipeline.nouns.section import Charts, Columns, Facts, Part, Picture, Pictures, Section, Table, Text
 from pipeline.report.page import charts, words
@@ -57,10 +57,14 @@ def solution(content: Results) -> Section | None:
         ("flow rate", f"{s.flow_rate:.4g} m³/s"),
         ("forces and mass balance to", f"{abs(s.force_balance_error):.1g} and {abs(s.mass_balance_error):.1g}"),
         ("iterations", f"{s.iterations:,}, {'settled' if s.converged else 'not settled'}"),
-        ("solver and time", f"{s.engine}, {s.seconds:.3g} s on {s.cores} core{'s' if s.cores > 1 else ''}"),
     ]
+    cost = content.get(SolvingCost)
+    if cost is not None:
+        time = f"{cost.seconds:.3g} s on {cost.cores} core{'s' if cost.cores > 1 else ''}"
+        facts.append(("solver and time", f"{s.engine}, {time}"))
     if s.reynolds is not None and s.knudsen is not None:
-        facts.insert(3, ("Reynolds and Knudsen number", f"{s.reynolds:.2g} and {s.knudsen:.2g} ({s.regime} flow)"))
+        facts.insert(3, ("Knudsen number", f"{s.knudsen:.2g} ({s.regime} flow)"))
+        facts.insert(3, ("fiber Reynolds number", f"{s.reynolds:.2g}, {s.inertia_words}"))
     if s.wall_edges:
         curved = 1.0 - (s.straight_wall_edges or 0) / s.wall_edges
         facts.append(("edges on walls that lie on the true fibers", f"{curved:.0%}"))
@@ -79,10 +83,16 @@ def solution(content: Results) -> Section | None:
             )
         )
     )
+    drawn, told = [], []
     if s.drag_per_fiber:
-        parts.append(
-            Charts((charts.drag_chart(s),), "Drag of each fiber along the flow, in the order of mat/fibers.csv.")
-        )
+        drawn.append(charts.drag_chart(s))
+        told.append("Drag of each fiber along the flow, in the order of mat/fibers.csv.")
+    settling = content.get(Settling)
+    if settling is not None:
+        drawn.append(charts.settling_chart(settling))
+        told.append("How far the pressure drop was from where it settled.")
+    if drawn:
+        parts.append(Charts(tuple(drawn), " ".join(told)))
     if found is not None:
         against = tuple(
             (row.title or name, words.finite(row.mesh), f"{row.mesh / s.pressure_drop - 1:+.1%}")

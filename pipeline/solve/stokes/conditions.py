@@ -106,7 +106,7 @@ def slip(
     from scipy.sparse import coo_array
 
     six = nodes.of_triangles(faces)
-    places, weights, values, slopes = _triangle_rule()
+    places, weights, values, slopes = triangle_rule()
     at = walls.positions[six]
     along = np.einsum("fka,qkb->fqab", at, slopes)
     area = np.cross(along[..., 0], along[..., 1])
@@ -135,7 +135,7 @@ def slip(
     return Conditions(fixed, given, bound, allowed, friction, rub, through)
 
 
-def _triangle_rule() -> tuple[Floats, Floats, Floats, Floats]:
+def triangle_rule() -> tuple[Floats, Floats, Floats, Floats]:
     """Dunavant's rule of 6 points and degree 4 on the triangle, and the quadratic functions and slopes there."""
     a, b = 0.445948490915965, 0.091576213509771
     places = np.array(

@@ -105,7 +105,8 @@ def _columns_of_rows(rows_of: Indices, columns_of: Indices, rows: int) -> tuple[
 
 
 @compiled
-def _place_of(start: Ints, column_of: Indices, row: int, column: int) -> int:
+def place_of(start: Ints, column_of: Indices, row: int, column: int) -> int:
+    """Place of an entry in the pattern of compressed rows; it has to be there."""
     low, high = int(start[row]), int(start[row + 1]) - 1
     while low < high:
         middle = (low + high) // 2
@@ -117,7 +118,8 @@ def _place_of(start: Ints, column_of: Indices, row: int, column: int) -> int:
 
 
 @compiled
-def _inverse(j: Floats, out: Floats) -> float:
+def inverse_of(j: Floats, out: Floats) -> float:
+    """Invert a (3, 3) array into `out`, and give its determinant."""
     out[0, 0] = j[1, 1] * j[2, 2] - j[1, 2] * j[2, 1]
     out[0, 1] = j[0, 2] * j[2, 1] - j[0, 1] * j[2, 2]
     out[0, 2] = j[0, 1] * j[1, 2] - j[0, 2] * j[1, 1]
@@ -166,7 +168,7 @@ def _add_cells(
                 for a in range(3):
                     for b in range(3):
                         jacobian[a, b] += positions[node, a] * slopes[q, k, b]
-            weight = weights[q] * _inverse(jacobian, inverse)
+            weight = weights[q] * inverse_of(jacobian, inverse)
             for k in range(10):
                 for a in range(3):
                     slope[k, a] = (
@@ -189,16 +191,16 @@ def _add_cells(
         for k in range(10):
             row = unknown[cell, k]
             for m in range(10):
-                place = _place_of(stiff_start, stiff_column, row, unknown[cell, m])
+                place = place_of(stiff_start, stiff_column, row, unknown[cell, m])
                 stiff[place] += local[k, m] if m <= k else local[m, k]
         for v in range(4):
             row = unknown[cell, v]
             for k in range(10):
-                place = _place_of(div_start, div_column, row, unknown[cell, k])
+                place = place_of(div_start, div_column, row, unknown[cell, k])
                 for a in range(3):
                     div[place, a] += local_div[v, k, a]
             for m in range(4):
-                mass[_place_of(vertex_start, vertex_column, row, unknown[cell, m])] += local_mass[v, m]
+                mass[place_of(vertex_start, vertex_column, row, unknown[cell, m])] += local_mass[v, m]
 
 
 @compiled
@@ -212,7 +214,7 @@ def _add_straight(
         for k in range(3):
             for a in range(3):
                 jacobian[a, k] = positions[cells[cell, k + 1], a] - positions[cells[cell, 0], a]
-        volume = _inverse(jacobian, inverse) / 6.0
+        volume = inverse_of(jacobian, inverse) / 6.0
         for a in range(3):
             slope[0, a] = -inverse[0, a] - inverse[1, a] - inverse[2, a]
             for k in range(3):
@@ -220,7 +222,7 @@ def _add_straight(
         for v in range(4):
             for m in range(4):
                 value = slope[v, 0] * slope[m, 0] + slope[v, 1] * slope[m, 1] + slope[v, 2] * slope[m, 2]
-                stiff[_place_of(start, column, unknown[cell, v], unknown[cell, m])] += volume * value
+                stiff[place_of(start, column, unknown[cell, v], unknown[cell, m])] += volume * value
 
 
 @dataclass(frozen=True, eq=False, slots=True)

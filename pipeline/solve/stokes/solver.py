@@ -3,7 +3,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import math
-import time
 
 import numpy as np
 import psutil
@@ -14,19 +13,24 @@ from pipeline.geometry.triangles import area_vectors
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.fibers import Pieces
-from pipeline.nouns.flow import Flow, Solution
+from pipeline.nouns.flow import Curve, Flow, Settling, Solution
 from pipeline.nouns.flow_field import FlowField
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.patches import FIBERS
 from pipeline.progress import Progress
 from pipeline.solve.bed import Bed
+from pipeline.solve.regime import mach, refuse_compressed, refuse_regime, reynolds
 from pipeline.solve.settings import StokesSettings
-from pipeline.solve.stokes.creeping import Creep, Duct, creep
+from pipeline.solve.stokes.creeping import creep
+from pipeline.solve.stokes.duct import Duct
+from pipeline.solve.stokes.inertia import with_inertia
 from pipeline.solve.stokes.passage import refuse_blocked
+from pipeline.solve.stokes.system import DuctFlow, System
 
-MOST_REYNOLDS = 0.5
-"""Fiber Reynolds number up to which the drag of creeping flow is right within .5 %."""
+CREEPING_REYNOLDS = 0.1
+"""Fiber Reynolds number below which inertia is left out: it changes no drop that was measured by .5 % there."""
 _NODE_MEMORY = 2600  # bytes per node at the peak, by the sizes of its arrays at 38,000 to 150,000 cells
+_INERTIA_MEMORY = 1300  # bytes per node more, for what changes with the velocity
 _MEMORY_SHARE = 0.85
 _OTHER = {"slip": "no_slip", "no_slip": "slip"}
 
@@ -41,8 +45,8 @@ def solve_stokes(
     sides: str,
     settings: StokesSettings,
     progress: Progress,
-) -> tuple[Solution, FlowField]:
-    """Solve for the creeping flow through a meshed duct, with the wall that the case has and with the other one.
+) -> tuple[Solution, FlowField, Settling]:
+    """Solve for the steady flow through a meshed duct, with the wall that the case has and with the other one.
 
     Parameters
     ----------
@@ -63,24 +67,26 @@ def solve_stokes(
     Returns
     -------
     Solution
+        With inertia where the Reynolds number is above `CREEPING_REYNOLDS`.
     FlowField
+    Settling
 
     Raises
     ------
     StageError
-        If the mesh is not of tetrahedra or lets no air through, the flow is not creeping, the air does not slip but
-        fly, the memory is too small, or the iterations stall.
+        If the mesh is not of tetrahedra or lets no air through, the air is compressed, does not flow steadily or does
+        not slip but fly, the memory is too small, or the iterations stall.
     """
-    began = time.monotonic()
     unit = 2.0 * float(domain.radius.mean())
-    reynolds = flow.density * flow.face_velocity * unit / flow.viscosity
     length = SLIP_COEFFICIENT * flow.mean_free_path
-    _refuse_flow(flow, reynolds, length, unit, solidity, fiber_wall)
+    refuse_regime(flow, unit, solidity, fiber_wall)
+    number = reynolds(flow, unit)
     progress("solve: preparing the elements")
     duct = _duct(mesh, domain, unit, sides)
-    _refuse_memory(duct.nodes.count, settings)
+    _refuse_memory(duct.nodes.count, number > CREEPING_REYNOLDS, settings)
     scale = flow.viscosity * flow.face_velocity / unit
-    found: dict[str, Creep] = {}
+    creeping: dict[str, DuctFlow] = {}
+    carried: dict[str, DuctFlow] = {}
     # without slip first: it is a good start for the one with slip
     for wall in ("no_slip", "slip") if fiber_wall == "slip" or length < unit else ("no_slip",):
 
@@ -88,36 +94,53 @@ def solve_stokes(
             # an error that falls from 1 to the tolerance, in even steps on a logarithmic scale
             share = math.log(min(max(error, settings.tolerance), 1.0)) / math.log(settings.tolerance)
             known = f", changed by {100 * error:.2g} %" if math.isfinite(error) else ""
+            way = wall.replace("_", " ") + (" with inertia" if wall in creeping else "")
             progress(
-                f"solve: {wall.replace('_', ' ')}, iteration {iterations}, pressure drop {drop * scale:.5g} Pa{known}",
-                max(share, 0.0),
+                f"solve: {way}, iteration {iterations}, pressure drop {drop * scale:.5g} Pa{known}", max(share, 0.0)
             )
 
-        found[wall] = creep(
-            duct,
-            length / unit if wall == "slip" else 0.0,
-            settings.tolerance,
-            settings.max_iterations,
-            settling,
-            found.get("no_slip"),
-        )
+        system = System(duct, length / unit if wall == "slip" else 0.0)
+        limits = settings.tolerance, settings.max_iterations, settling
+        creeping[wall] = creep(system, *limits, creeping.get("no_slip"))
+        if number > CREEPING_REYNOLDS and creeping[wall].settled:
+            carried[wall] = with_inertia(system, number, *limits, creeping[wall])
+    found = {**creeping, **carried}
+    field = _field(duct, found[fiber_wall], domain, flow, length if fiber_wall == "slip" else 0.0)
+    refuse_compressed(flow, float(np.linalg.norm(field.velocity, axis=1).max()))
+    before = creeping[fiber_wall].drop * scale if fiber_wall in carried else None
+    curves = tuple(
+        Curve(wall, tuple(at for at, _ in flown.history), tuple(scale * drop for _, drop in flown.history))
+        for wall, flown in found.items()
+    )
+    return _solution(duct, found, before, mesh, domain, flow, bed, fiber_wall), field, Settling(curves)
+
+
+def _solution(
+    duct: Duct,
+    found: dict[str, DuctFlow],
+    creeping: float | None,
+    mesh: FaceMesh,
+    domain: FluidDomain,
+    flow: Flow,
+    bed: Bed,
+    fiber_wall: str,
+) -> Solution:
+    """Give what was found with each wall in SI; `creeping` is the drop [Pa] without inertia, where it was solved."""
+    unit = 2.0 * float(domain.radius.mean())
+    scale, force = flow.viscosity * flow.face_velocity / unit, flow.viscosity * flow.face_velocity * unit
     this = found[fiber_wall]
-    other = found.get(_OTHER[fiber_wall])
-    drop, drags = this.drop * scale, _drags(duct, this, mesh.fiber) * flow.viscosity * flow.face_velocity * unit
+    drop, drags = this.drop * scale, _drags(duct, this, mesh.fiber) * force
     drag = float(drags.sum())
-    flow_rate = flow.face_velocity * duct.area * unit**2
     kn = float(knudsen(flow.mean_free_path, unit))
-    solution = Solution(
+    return Solution(
         pressure_drop=drop,
-        flow_rate=flow_rate,
+        flow_rate=flow.face_velocity * duct.area * unit**2,
         drag=drag,
         permeability=bed.permeability(flow, drop),
-        force_balance_error=drag / (drop * duct.area * unit**2) - 1.0,
+        force_balance_error=this.balance,
         mass_balance_error=this.leak,
         iterations=this.iterations,
         converged=this.settled,
-        seconds=time.monotonic() - began,
-        cores=1,
         effective_fiber_diameter=bed.effective_diameter(flow, drop),
         f_star=bed.f_star(flow, drag),
         engine="stokes",
@@ -125,23 +148,29 @@ def solve_stokes(
         pressure_drop_error=this.error,
         pressure_drop_no_slip=found["no_slip"].drop * scale,
         pressure_drop_slip=found["slip"].drop * scale if "slip" in found else None,
-        other_wall="second solve on the same mesh" if other is not None else None,
+        other_wall="second solve on the same mesh" if _OTHER[fiber_wall] in found else None,
+        inertia=creeping is not None,
+        pressure_drop_creeping=creeping,
         drag_per_fiber=tuple(drags.tolist()),
-        reynolds=reynolds,
+        reynolds=reynolds(flow, unit),
+        mach=mach(flow, flow.face_velocity),
         knudsen=kn,
         regime=regime(kn),
         wall_edges=duct.walls.edges,
         straight_wall_edges=duct.walls.straight,
     )
-    field = FlowField(
+
+
+def _field(duct: Duct, found: DuctFlow, domain: FluidDomain, flow: Flow, slip_length: float) -> FlowField:
+    unit = 2.0 * float(domain.radius.mean())
+    return FlowField(
         positions=duct.walls.positions * unit + np.array(domain.box.lower),
         cells=duct.nodes.cells,
-        velocity=this.velocity[duct.unknown] * flow.face_velocity,
-        pressure=this.pressure[duct.unknown[: duct.nodes.vertices]] * scale,
+        velocity=found.velocity[duct.unknown] * flow.face_velocity,
+        pressure=found.pressure[duct.unknown[: duct.nodes.vertices]] * flow.viscosity * flow.face_velocity / unit,
         curved=duct.walls.curved,
-        slip_length=length if fiber_wall == "slip" else 0.0,
+        slip_length=slip_length,
     )
-    return solution, field
 
 
 def _duct(mesh: FaceMesh, domain: FluidDomain, unit: float, sides: str) -> Duct:
@@ -165,24 +194,8 @@ def _duct(mesh: FaceMesh, domain: FluidDomain, unit: float, sides: str) -> Duct:
     )
 
 
-def _refuse_flow(flow: Flow, reynolds: float, length: float, unit: float, solidity: float, wall: str) -> None:
-    if reynolds > MOST_REYNOLDS:
-        raise StageError(
-            f"the fibers' Reynolds number is {reynolds:.3g}: above {MOST_REYNOLDS} inertia counts, "
-            'which the engine stokes leaves out; set solve.engine to "openfoam", or lower flow.face_velocity'
-        )
-    gap = unit * (math.sqrt(math.pi / (4.0 * solidity)) - 1.0)
-    if wall == "slip" and length > gap:
-        kn = float(knudsen(flow.mean_free_path, unit))
-        raise StageError(
-            f"the slip length, {1e9 * length:.4g} nm, is beyond the gap between fibers, {1e9 * gap:.4g} nm "
-            f"(Knudsen number {kn:.3g}, {regime(kn)} flow): molecules fly from fiber to fiber, and no flow equation "
-            'holds; raise flow.pressure or the fiber diameter, or set flow.fiber_wall to "no_slip" for an upper bound'
-        )
-
-
-def _refuse_memory(nodes: int, settings: StokesSettings) -> None:
-    needed = nodes * _NODE_MEMORY
+def _refuse_memory(nodes: int, inertia: bool, settings: StokesSettings) -> None:
+    needed = nodes * (_NODE_MEMORY + (_INERTIA_MEMORY if inertia else 0))
     allowed = settings.memory_limit or _MEMORY_SHARE * psutil.virtual_memory().available
     if needed > allowed:
         raise StageError(
@@ -191,7 +204,7 @@ def _refuse_memory(nodes: int, settings: StokesSettings) -> None:
         )
 
 
-def _drags(duct: Duct, flow: Creep, fiber: Ints) -> Floats:
+def _drags(duct: Duct, flow: DuctFlow, fiber: Ints) -> Floats:
     """Drag of each fiber along the flow; what holds a node counts to the fibers of the faces around it, by area."""
     triangles = duct.triangles[FIBERS]
     around = duct.unknown[duct.nodes.of_triangles(triangles)]

@@ -13,7 +13,8 @@ from pipeline.nouns.arrays import Floats, Ints
 
 Indices = npt.NDArray[np.int32]
 Flags = npt.NDArray[np.uint8]
-Values = Floats | npt.NDArray[np.float32]
+Blocks = npt.NDArray[np.float32]
+Values = Floats | Blocks
 
 
 @compiled
@@ -27,6 +28,22 @@ def times(start: Ints, column: Indices, values: Values, x: Floats, y: Floats) ->
             b += value * x[j, 1]
             c += value * x[j, 2]
         y[row, 0], y[row, 1], y[row, 2] = a, b, c
+
+
+@compiled
+def add_blocks(start: Ints, column: Indices, values: Blocks, x: Floats, y: Floats) -> None:
+    """Matrix of (3, 3) blocks times (n, 3) vectors, added to y."""
+    for row in range(len(start) - 1):
+        a, b, c = 0.0, 0.0, 0.0
+        for place in range(start[row], start[row + 1]):
+            j = column[place]
+            one, two, three = x[j, 0], x[j, 1], x[j, 2]
+            a += values[place, 0, 0] * one + values[place, 0, 1] * two + values[place, 0, 2] * three
+            b += values[place, 1, 0] * one + values[place, 1, 1] * two + values[place, 1, 2] * three
+            c += values[place, 2, 0] * one + values[place, 2, 1] * two + values[place, 2, 2] * three
+        y[row, 0] += a
+        y[row, 1] += b
+        y[row, 2] += c
 
 
 @compiled

@@ -1,0 +1,142 @@
+"""Flow with inertia, by second-order elements: its limits, its laws, and the flows that are refused."""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from pipeline.errors import StageError
+from pipeline.nouns.flow import Flow
+from pipeline.solve.regime import refuse_compressed, refuse_regime, reynolds
+from pipeline.solve.stokes import solver
+from pipeline.solve.stokes.convection import Convection
+from pipeline.solve.stokes.duct import Duct
+from tests.openfoam import AIR
+from tests.solve.rows import rows
+from tests.solve.test_stokes import f_star, solved
+
+RADIUS = 5e-6
+
+
+def at_reynolds(number: float) -> Flow:
+    """Air whose Reynolds number with fibers of `RADIUS` is this."""
+    return dataclasses.replace(AIR, face_velocity=number * AIR.viscosity / (AIR.density * 2 * RADIUS))
+
+
+def small_duct() -> Duct:
+    mesh, domain = rows(0.1, around=4, outward=3, radius=RADIUS)
+    return solver._duct(mesh.face_mesh(), domain, 2 * RADIUS, "symmetry")
+
+
+def test_inertia_adds_the_square_of_the_reynolds_number_to_the_drag() -> None:
+    # a row is symmetric fore and aft: reversed, the creeping flow is itself, so no term of first order is left
+    mesh, domain = rows(0.1, around=5, outward=5, radius=RADIUS)
+    added = []
+    for number in (0.25, 0.5):
+        solution, _ = solved(mesh, domain, 0.01, flow=at_reynolds(number))
+        assert solution.inertia
+        assert solution.reynolds == pytest.approx(number)
+        assert solution.pressure_drop_creeping is not None
+        added.append(solution.pressure_drop / solution.pressure_drop_creeping - 1.0)
+    # the fourth order takes a few percent of it at .5
+    assert added[1] / added[0] == pytest.approx(4.0, rel=0.1)
+
+
+def test_forces_balance_the_momentum_that_the_air_takes_with_it() -> None:
+    # the wake still crosses the outlet: what its momentum lacks is what drag has over the pressure's force
+    mesh, domain = rows(0.1, around=5, outward=4, plenum=1.0, radius=RADIUS)
+    flow = at_reynolds(10.0)
+    solution, field = solved(mesh, domain, 0.1, "slip", flow=flow)
+    assert solution.converged
+    assert abs(solution.force_balance_error) < 1e-6
+    assert abs(solution.mass_balance_error) < 1e-5
+    without = solution.drag / (solution.pressure_drop * domain.slab.face_area) - 1.0
+    assert abs(without) > 1e-4
+    # momentum out less momentum in, over the outlet's nodes: the mean of a square is above the square of the mean
+    out = np.isclose(field.positions[:, 2], domain.box.upper[2], atol=1e-12)
+    assert without < 0.0
+    assert np.mean(field.velocity[out, 2] ** 2) > flow.face_velocity**2
+
+
+def test_the_change_of_the_momentum_force_is_its_derivative() -> None:
+    # the force is quadratic: with h the difference to its derivative falls with h, exactly linear
+    duct = small_duct()
+    convection = Convection(duct, 3.0)
+    m, rng = duct.matrices, np.random.default_rng(5)
+    velocity, step = rng.normal(size=(2, m.unknowns, 3))
+    from scipy.sparse import bsr_array, csr_array
+
+    carried, bent = convection.change(velocity, both=True)
+    n = m.unknowns
+    by = csr_array((carried.astype(float), m.column, m.start), shape=(n, n)) @ step
+    by += (bsr_array((bent.astype(float), m.column, m.start), shape=(3 * n, 3 * n)) @ step.ravel()).reshape(-1, 3)
+    # of a quadratic function the central difference is the derivative, up to the blocks' single precision
+    central = 0.5 * (convection.force(velocity + step) - convection.force(velocity - step))
+    assert by == pytest.approx(central, abs=2e-6 * np.abs(central).max())
+    picard, none = convection.change(velocity, both=False)
+    assert len(none) == 0
+    assert np.array_equal(picard, carried)
+
+
+def test_what_a_uniform_stream_takes_through_the_duct_is_no_force_inside() -> None:
+    # u = e_z everywhere: what enters leaves, and the walls across it take what hits them
+    duct = small_duct()
+    convection = Convection(duct, 2.0)
+    stream = np.tile([0.0, 0.0, 1.0], (duct.matrices.unknowns, 1))
+    assert convection.flux(stream) == pytest.approx(0.0, abs=1e-12)
+    force = convection.force(stream)
+    at_rest = np.ones(len(force), bool)
+    at_rest[duct.unknown[duct.walls.wall]] = False
+    assert np.abs(force[at_rest]).max() < 1e-12
+
+
+def test_below_the_limit_air_creeps_and_above_it_does_not() -> None:
+    mesh, domain = rows(0.1, around=4, outward=3, radius=RADIUS)
+    below, _ = solved(mesh, domain, 0.01, flow=at_reynolds(0.99 * solver.CREEPING_REYNOLDS))
+    assert below.inertia is False
+    assert below.pressure_drop_creeping is None
+    above, _ = solved(mesh, domain, 0.01, flow=at_reynolds(1.01 * solver.CREEPING_REYNOLDS))
+    assert above.inertia
+    # so what a flow just below the limit leaves out is less than the half percent it claims
+    assert above.pressure_drop_creeping is not None
+    assert abs(above.pressure_drop / above.pressure_drop_creeping - 1.0) < 5e-3
+
+
+def test_more_air_past_a_row_has_more_drag_than_its_share() -> None:
+    mesh, domain = rows(0.1, count=2, around=4, outward=3, radius=RADIUS)
+    stars = []
+    for number in (1.0, 10.0, 20.0):
+        flow = at_reynolds(number)
+        solution, _ = solved(mesh, domain, 0.01, flow=flow)
+        assert solution.converged
+        stars.append([f_star(solution, domain, row, flow) for row in (0, 1)])
+    assert stars[0][0] < stars[1][0] < stars[2][0]
+    # the second row stands in the wake of the first
+    assert all(second < first for first, second in stars[1:])
+
+
+@pytest.mark.parametrize(
+    ("flow", "reason"),
+    [
+        (dataclasses.replace(AIR, face_velocity=110.0), r"Mach number between the fibers is 0\.35.* compressed"),
+        (at_reynolds(45.0), r"Reynolds number between the fibers is 50.* vortices"),
+        (dataclasses.replace(AIR, mean_free_path=30e-6), r"beyond the gap .* transition flow.* molecules fly"),
+    ],
+)
+def test_flows_beyond_the_equations_are_refused_with_the_reason(flow: Flow, reason: str) -> None:
+    with pytest.raises(StageError, match=reason):
+        refuse_regime(flow, 2 * RADIUS if "Reynolds" in reason else 2e-6 if "Mach" in reason else 10e-6, 0.1, "slip")
+    refuse_regime(at_reynolds(30.0), 2 * RADIUS, 0.1, "slip")
+
+
+def test_air_that_is_compressed_in_the_gaps_alone_is_refused() -> None:
+    # 343 m/s is the speed of sound at 20 degrees
+    refuse_compressed(AIR, 0.29 * 343.2)
+    with pytest.raises(StageError, match="reaches 110 m/s in the gaps"):
+        refuse_compressed(AIR, 110.0)
+
+
+def test_the_reynolds_number_is_that_of_the_face_velocity_and_the_diameter() -> None:
+    assert reynolds(at_reynolds(2.0), 2 * RADIUS) == pytest.approx(2.0)
