@@ -16,11 +16,13 @@ from pipeline.capture.intervals import share_interval
 from pipeline.capture.langevin import Motion
 from pipeline.capture.starts import starts
 from pipeline.capture.trajectories import CAPTURED, TIMED_OUT, Duct, Fates, Pace, tracked
+from pipeline.line.places import remove
 from pipeline.line.store import DAMAGE, read_arrays
 
 BATCH = 500
 """Particles that are followed in one go: the work that a killed run loses at most, per core."""
 
+_KINDS = {"outcome": np.int64, "piece": np.int64, "place": np.float64, "time": np.float64, "steps": np.int64}
 _FIRST_COUNT = 1000
 _LARGEST_COUNT = 10_000_000
 
@@ -113,6 +115,8 @@ def _batch(
     fates = tracked(places, first, seed, size, motion, filter.duct, pace, filter.cells, filter.grid)
     if path is not None:
         side = path.with_suffix(".partial.npz")
+        for place in (side, path):
+            remove(place)
         np.savez(side, **fates._asdict())
         side.rename(path)
     return fates
@@ -126,6 +130,7 @@ def _kept(path: Path, count: int) -> Fates | None:
     except DAMAGE:
         return None
     whole = shapes == [(count, 3) if name == "place" else (count,) for name in Fates._fields]
+    whole = whole and all(found[name].dtype == kind for name, kind in _KINDS.items())
     return Fates(**{name: found[name] for name in Fates._fields}) if whole else None
 
 

@@ -47,7 +47,7 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     )
     # beside the stage and not in it: a killed run goes on from its finished batches, unless something changed
     whole = kept_folder(results.folder, "capture")
-    key = store.digest([case.capture.model_dump(mode="json"), case.flow.model_dump(mode="json"), source])
+    key = store.digest([results.key, source])
     kept = whole / key[:16]
     if whole.exists() and not kept.exists():
         remove(whole)

@@ -35,7 +35,7 @@ def export_run(
     run = Run.opened(folder)
     case = _changed(run.case, overrides)
     run = Run(case, folder, left_out=run.left_out)
-    place = out if out is not None else own_folder(folder / "export")
+    place = out if out is not None else own_folder(folder, "export")
     made = _made_by_the_run(folder) if out is None else set()
     if overrides and (mine := [name for name in formats if name in made]):
         raise CaseError(f"{place / mine[0]} belongs to the run, which has other settings; choose a folder with --out")

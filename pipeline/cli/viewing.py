@@ -49,7 +49,7 @@ def view_run(folder: Path, scene: str | None, screenshot: Path | None) -> None:
     elif screenless():
         names = (scene,) if scene else there
         with disk_trouble_explained(folder):
-            files = {name: own_file(own_folder(folder / PICTURES) / f"{name}.png") for name in names}
+            files = {name: own_file(own_folder(folder, PICTURES) / f"{name}.png") for name in names}
         _draw(subject, files, "png")
     else:
         show(subject, there, scene, f"fibertwin: {folder}")

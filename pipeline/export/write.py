@@ -2,7 +2,6 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-import shutil
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -11,6 +10,7 @@ from pipeline.export.formats.format import Order
 from pipeline.export.formats.openfoam.slip import FiberSlip
 from pipeline.export.formats.registry import WRITTEN
 from pipeline.export.settings import ExportSettings
+from pipeline.line.places import remove
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.flow import Flow
 from pipeline.nouns.mesh import FaceMesh
@@ -120,11 +120,26 @@ def write_one(name: str, thing: object, folder: Path, order: Order) -> None:
             "in export.formats, or a tetmesh.engine that makes tetrahedra"
         )
     place, side = folder / name, folder / f".{name}.partial"
-    shutil.rmtree(side, ignore_errors=True)
+    remove(side)
     side.mkdir(parents=True)
     try:
         kind.write(thing, side, order)
-        shutil.rmtree(place, ignore_errors=True)
+        _refuse_to_lose(place, side)
+        remove(place)
         side.rename(place)
     finally:
-        shutil.rmtree(side, ignore_errors=True)
+        remove(side)
+
+
+def _refuse_to_lose(place: Path, side: Path) -> None:
+    """Refuse to take the place of a folder in which somebody keeps something else."""
+    if place.is_symlink() or not place.is_dir():
+        return
+    written = {path.relative_to(side) for path in side.rglob("*")}
+    others = sorted(path.relative_to(place) for path in place.rglob("*"))
+    others = [path for path in others if path not in written]
+    if others:
+        raise StageError(
+            f"{place} holds {len(others)} files and folders that this export does not write, first {others[0]}; "
+            "move them, or choose another folder with --out"
+        )

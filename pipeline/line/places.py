@@ -61,12 +61,15 @@ def write_text(path: Path, text: str) -> None:
         raise
 
 
-def own_folder(path: Path) -> Path:
-    """Give a folder of the run to write into; a link or a file in its place is removed."""
-    if path.is_symlink() or (path.exists() and not path.is_dir()):
-        remove(path)
-    path.mkdir(parents=True, exist_ok=True)
-    return path
+def own_folder(run: Path, *names: str) -> Path:
+    """Give a folder within a run's to write into; a link or a file in its place, or on the way to it, is removed."""
+    place = run
+    for name in names:
+        place = place / name
+        if place.is_symlink() or (place.exists() and not place.is_dir()):
+            remove(place)
+    place.mkdir(parents=True, exist_ok=True)
+    return place
 
 
 def own_file(path: Path) -> Path:

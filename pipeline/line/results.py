@@ -35,6 +35,8 @@ class Results:
         Nouns that were read already.
     made : dict of str to dict
         Manifests that were read already, by stage.
+    key : str
+        Digest of all that the stage depends on that is being made: what it keeps for a next try is of this key.
     """
 
     case: "Case"
@@ -43,6 +45,7 @@ class Results:
     left_out: tuple[str, ...] = ()
     loaded: dict[type, object] = field(default_factory=dict)
     made: dict[str, dict[str, Any]] = field(default_factory=dict)
+    key: str = ""
 
     @property
     def name(self) -> str:

@@ -4,7 +4,7 @@
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -260,9 +260,10 @@ def _step(stage: Stage, case: Case, folder: Path, again: bool, progress: Progres
     began = time.perf_counter()
     with places.side_folder(place) as side:
         depends_on = identity(stage, results)
-        counts: Counts = stage.make(results, side, progress)
+        key = store.digest(depends_on)
+        counts: Counts = stage.make(replace(results, key=key), side, progress)
         seconds = time.perf_counter() - began
-        made = {"stage": stage.name, "key": store.digest(depends_on), "why": why, **depends_on}
+        made = {"stage": stage.name, "key": key, "why": why, **depends_on}
         cost = {"seconds": seconds, "peak_memory": peak_memory()}
         write_manifest(side, {**made, **cost, "counts": counts}, stage.records)
     return Outcome(stage.name, place, "made", seconds, counts, why)

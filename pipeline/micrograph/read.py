@@ -4,6 +4,7 @@
 
 import warnings
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -11,9 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from pipeline.errors import CaseError
+from pipeline.isolated import isolated
 from pipeline.micrograph.clean import strip_rows
 from pipeline.micrograph.picture import Micrograph
 from pipeline.micrograph.scale import bar_length, credible, scale_of_tiff
+from pipeline.reading import open_file
 
 LARGEST = 24_000_000
 """Pixels beyond which a picture is refused: its directions take 144 bytes a pixel."""
@@ -60,7 +63,12 @@ def read_micrograph(
     CaseError
         If the file cannot be read, is too small or too large, or nothing tells the length of a pixel.
     """
-    raw = _read(path, window)
+    try:
+        # libtiff and Pillow may crash on a damaged file, and speak to the terminal
+        _head(path)
+        raw = isolated(partial(_read, window=window), path)
+    except (ValueError, ArithmeticError, LookupError, MemoryError) as problem:
+        raise CaseError(f"{path} is damaged, or no picture in TIFF or PNG: {problem}") from problem
     pixels = raw.pixels if raw.cut or window is None else _part(raw.pixels, window)
     columns = pixels.shape[1]
     if pixels.size > LARGEST:
@@ -106,14 +114,19 @@ def _part(pixels: npt.NDArray[Any], window: Window | None) -> npt.NDArray[Any]:
     return np.asarray(pixels[top:bottom, left:right])
 
 
-def _read(path: Path, window: Window | None) -> Raw:
+def _head(path: Path) -> bytes:
     try:
-        with path.open("rb") as file:
+        with open_file(path) as file:
             head = file.read(8)
     except OSError as problem:
         raise CaseError(f"cannot read the picture {path}: {problem.strerror}") from problem
     if not head:
         raise CaseError(f"the picture {path} is empty")
+    return head
+
+
+def _read(path: Path, window: Window | None) -> Raw:
+    head = _head(path)
     return _read_tiff(path, window) if head[:4] in _TIFF else _read_other(path)
 
 

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pipeline.nouns.section import Table
+from pipeline.reading import read_bytes
 
 RESULT = "convergence.json"
 """File of a run's folder that holds what `fibertwin converge` found."""
+_LARGEST = 1_000_000  # bytes; a few numbers and notes take some thousands
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +144,6 @@ def read_convergence(folder: Path) -> ConvergedDrop | None:
     from pydantic import TypeAdapter, ValidationError
 
     try:
-        return TypeAdapter(ConvergedDrop).validate_json((folder / RESULT).read_bytes())
+        return TypeAdapter(ConvergedDrop).validate_json(read_bytes(folder / RESULT, _LARGEST, links=False))
     except (OSError, ValidationError):
         return None

@@ -6,6 +6,7 @@ import hashlib
 import math
 import re
 import shutil
+import stat
 import time
 from pathlib import Path
 
@@ -101,10 +102,10 @@ def _prepare(case: Path, work: Path, settings: OpenFoamSettings) -> None:
         cut(work, int(rows[-1, 0]) if len(rows) else 0)
         # and so may be a dictionary that was edited
         remove(work / "system")
-        shutil.copytree(case / "system", work / "system")
+        _copy(case / "system", work / "system")
     else:
         remove(work)
-        shutil.copytree(case, work)
+        _copy(case, work)
     if settings.cores > 1:
         _edit(work / "system/decomposeParDict", numberOfSubdomains=settings.cores, n=f"(1 1 {settings.cores})")
     if _text(work / _KEY) != key:
@@ -120,6 +121,20 @@ def _prepare(case: Path, work: Path, settings: OpenFoamSettings) -> None:
         writeInterval=step,
         purgeWrite=KEPT,
     )
+
+
+def _copy(case: Path, work: Path) -> None:
+    """Copy the files of a case, and nothing that a link leads to, a pipe or a device: it would take for good."""
+
+    def others(folder: str, names: list[str]) -> list[str]:
+        return [name for name in names if not _is_own(Path(folder, name))]
+
+    shutil.copytree(case, work, ignore=others)
+
+
+def _is_own(path: Path) -> bool:
+    mode = path.lstat().st_mode
+    return stat.S_ISREG(mode) or stat.S_ISDIR(mode)
 
 
 def _text(path: Path) -> str:
@@ -150,7 +165,7 @@ def _application(case: Path) -> str:
 
 def _digest(case: Path, cores: int) -> str:
     digest = hashlib.sha256(str(cores).encode())
-    for path in sorted(path for path in case.rglob("*") if path.is_file()):
+    for path in sorted(path for path in case.rglob("*") if path.is_file() and not path.is_symlink()):
         digest.update(path.relative_to(case).as_posix().encode())
         with path.open("rb") as file:
             digest.update(hashlib.file_digest(file, "sha256").digest())

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from pipeline.case import Case
 from pipeline.errors import CaseError, StageError
+from pipeline.line.places import own_folder
 from pipeline.line.run import Run, run
 from pipeline.mat.settings import BoxSettings, LayeredSettings
 from pipeline.nouns.convergence import Contributions, ConvergedDrop, Interval, MeshRung
@@ -57,7 +58,7 @@ def converge(case: Case, folder: Path, seeds: int, progress: Progress) -> Conver
     rungs = []
     for name, factor in zip(names, FACTORS, strict=True):
         this = case if name == "own" else case.model_copy(update={"tetmesh": case.tetmesh.scaled(factor)})
-        rungs.append(_rung(this, folder if name == "own" else folder / OTHERS / name, name, progress))
+        rungs.append(_rung(this, folder if name == "own" else own_folder(folder, OTHERS, name), name, progress))
     answers = (rungs[0].pressure_drop, rungs[1].pressure_drop, rungs[2].pressure_drop)
     # where two meshes came out alike, they tell of the mesher's chance, not of an order
     falling = rungs[0].spacing > rungs[1].spacing > rungs[2].spacing
@@ -124,7 +125,7 @@ def _beside(
     """Drop of the case with another mat; None and a note where that mat cannot be solved."""
     other = case.model_copy(update={"mat": case.mat.model_copy(update=change)})
     try:
-        return _rung(other, folder / OTHERS / name.replace(" ", "_"), name, progress).pressure_drop
+        return _rung(other, own_folder(folder, OTHERS, name.replace(" ", "_")), name, progress).pressure_drop
     except StageError as problem:
         # what moves the number is told as far as it is known; the number itself stands
         notes.append(f"{name}: {problem}")

@@ -15,6 +15,9 @@ from pipeline.line.run import program_of, wanted
 from pipeline.mat.settings import ArraySettings, FileSettings, SurfaceFileSettings
 from pipeline.study.settings import Study
 
+RESULTS, WORK = "results", "work"
+"""Folders of a study's: each run's numbers, and each run's stages."""
+
 
 @dataclass(frozen=True, slots=True)
 class Task:
@@ -52,12 +55,12 @@ class Task:
     @property
     def result(self) -> Path:
         """Folder of the run's numbers."""
-        return self.folder / "results" / self.name
+        return self.folder / RESULTS / self.name
 
     @property
     def work(self) -> Path:
         """Folder of the run's stages."""
-        return self.folder / "work" / self.name
+        return self.folder / WORK / self.name
 
     @property
     def done(self) -> bool:

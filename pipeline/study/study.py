@@ -13,7 +13,7 @@ from pipeline.errors import CaseError, FibertwinError
 from pipeline.line import places
 from pipeline.progress import Progress, silent
 from pipeline.study.one import read_result
-from pipeline.study.plan import Task, plan
+from pipeline.study.plan import RESULTS, WORK, Task, plan
 from pipeline.study.quantity import Quantity, Results, value_of
 from pipeline.study.settings import Reference, Study
 from pipeline.study.summary import Estimate, estimate
@@ -110,6 +110,8 @@ def carry_out_study(
     tasks = plan(study, folder)
     errors: dict[str, str] = {}
     with places.locked(folder):
+        for name in (RESULTS, WORK):
+            places.own_folder(folder, name)
         todo = [task for task in tasks if not task.done]
         kept = len(tasks) - len(todo)
         asked = _Asked(study.quantities)

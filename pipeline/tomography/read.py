@@ -2,8 +2,12 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import contextlib
+import logging
+import math
 import re
-from collections.abc import Callable
+import zlib
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +15,16 @@ import numpy as np
 import numpy.typing as npt
 
 from pipeline.errors import CaseError
+from pipeline.line.store import DAMAGE
+from pipeline.reading import open_file
 
 LARGEST = 500_000_000
 """Voxels of a window beyond which it is refused."""
 MEMORY_PER_VOXEL = 14
 """Bytes that a voxel of the window takes while the surface is made: as gray, smoothed, solid and label."""
 _TIFF_SUFFIXES = (".tif", ".tiff")
+_NUMBERS = "buif"  # kinds of numpy's types that are gray values
+_DAMAGE = (*DAMAGE, AttributeError, SyntaxError, zlib.error)
 
 Window = tuple[int, int, int, int, int, int]
 Gray = npt.NDArray[Any]
@@ -64,10 +72,8 @@ def read_voxels(
 
 
 def _numpy(path: Path) -> Gray:
-    try:
+    with _damage_told(f"{path} is damaged, or no array of numbers"):
         array: Gray = np.load(path, mmap_mode="r", allow_pickle=False)
-    except (ValueError, OSError, EOFError) as problem:
-        raise CaseError(f"{path} is damaged, or no array of numbers: {problem}") from problem
     if array.ndim != 3:
         raise CaseError(f"{path} has {array.ndim} dimensions, and a tomogram has three")
     # as scikit-image and tifffile have it: slices first
@@ -79,9 +85,11 @@ def _raw(path: Path, shape: tuple[int, int, int] | None, kind: str) -> Gray:
         raise CaseError(f"{path}: a .raw file does not tell its shape; give it, as --shape 512,512,300")
     try:
         number = np.dtype(kind)
-    except TypeError:
-        raise CaseError(f"--kind {kind!r}: write uint8, <u2 (little endian), >u2 (big endian) or float32") from None
-    wanted, there = int(np.prod(shape)) * number.itemsize, path.stat().st_size
+    except (TypeError, ValueError, SyntaxError):
+        number = np.dtype(object)
+    if number.kind not in _NUMBERS:
+        raise CaseError(f"--kind {kind!r}: write uint8, <u2 (little endian), >u2 (big endian) or float32")
+    wanted, there = math.prod(shape) * number.itemsize, path.stat().st_size
     if wanted != there:
         raise CaseError(
             f"{path} has {there:,} bytes, and {' x '.join(map(str, shape))} voxels of {number.name} take {wanted:,}: "
@@ -92,27 +100,51 @@ def _raw(path: Path, shape: tuple[int, int, int] | None, kind: str) -> Gray:
 
 
 def _of_array(array: Gray, window: Window | None, path: Path) -> Gray:
+    if array.dtype.kind not in _NUMBERS:
+        raise CaseError(f"{path} holds {array.dtype}, and a tomogram gray values: whole numbers, or float32")
     x0, y0, z0, x1, y1, z1 = _checked(window, array.shape, path)
     return np.ascontiguousarray(array[x0:x1, y0:y1, z0:z1])
 
 
-def _of_pages(path: Path, window: Window | None) -> Gray:
+@contextlib.contextmanager
+def _damage_told(words: str) -> Iterator[None]:
+    """Tell in one error what a damaged file makes of numpy and tifffile."""
+    try:
+        yield
+    except _DAMAGE as problem:
+        raise CaseError(f"{words}: {problem}") from problem
+
+
+@contextlib.contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """Open a TIFF, without what tifffile logs of its damage: what it raises is told."""
     import tifffile
 
-    try:
-        with tifffile.TiffFile(path) as file:
-            pages = file.pages
-            first = pages[0]
-            size = (int(first.shape[1]), int(first.shape[0]), len(pages))
-            x0, y0, z0, x1, y1, z1 = _checked(window, size, path)
-            return _stacked(lambda z: pages[z].asarray()[y0:y1, x0:x1], range(z0, z1), path)
-    except (tifffile.TiffFileError, IndexError, ValueError, OSError) as problem:
-        raise CaseError(f"{path} is damaged, or no TIFF that can be read: {problem}") from problem
+    logging.getLogger("tifffile").setLevel(logging.CRITICAL)
+    # a pipe or a device is refused; tifffile wants the name
+    open_file(path).close()
+    with tifffile.TiffFile(path) as file:
+        yield file
+
+
+def _gray(page: Any, path: Path) -> Gray:
+    """Read a page, unless it claims to be larger than any slice may be: a compressed one may say anything."""
+    if math.prod(page.shape) > LARGEST:
+        raise CaseError(f"{path} claims a slice of {' x '.join(map(str, page.shape[::-1]))} pixels")
+    pixels: Gray = page.asarray()
+    return pixels
+
+
+def _of_pages(path: Path, window: Window | None) -> Gray:
+    with _damage_told(f"{path} is damaged, or no TIFF that can be read"), _opened(path) as file:
+        pages = file.pages
+        first = pages[0]
+        size = (int(first.shape[1]), int(first.shape[0]), len(pages))
+        x0, y0, z0, x1, y1, z1 = _checked(window, size, path)
+        return _stacked(lambda z: _gray(pages[z], path)[y0:y1, x0:x1], range(z0, z1), path)
 
 
 def _of_slices(folder: Path, window: Window | None) -> Gray:
-    import tifffile
-
     numbered = sorted(
         (int(numbers[-1]), file)
         for file in folder.iterdir()
@@ -130,19 +162,22 @@ def _of_slices(folder: Path, window: Window | None) -> Gray:
     if len(set(there)) < len(there):
         raise CaseError(f"{folder} has two files for one slice; keep one stack in the folder")
     files = [file for _, file in numbered]
-    try:
-        with tifffile.TiffFile(files[0]) as file:
+
+    def slice_of(z: int) -> Gray:
+        with _opened(files[z]) as file:
+            return _gray(file.pages[0], files[z])
+
+    with _damage_told(f"a slice of {folder} is damaged, or no TIFF that can be read"):
+        with _opened(files[0]) as file:
             first = file.pages[0]
             size = (int(first.shape[1]), int(first.shape[0]), len(files))
         x0, y0, z0, x1, y1, z1 = _checked(window, size, folder)
-        return _stacked(lambda z: tifffile.imread(files[z])[y0:y1, x0:x1], range(z0, z1), folder)
-    except (tifffile.TiffFileError, IndexError, ValueError, OSError) as problem:
-        raise CaseError(f"a slice of {folder} is damaged, or no TIFF that can be read: {problem}") from problem
+        return _stacked(lambda z: slice_of(z)[y0:y1, x0:x1], range(z0, z1), folder)
 
 
 def _stacked(slice_of: Callable[[int], Gray], numbers: range, path: Path) -> Gray:
     first = slice_of(numbers[0])
-    if first.ndim != 2:
+    if first.ndim != 2 or first.dtype.kind not in _NUMBERS:
         raise CaseError(f"{path}: slice {numbers[0]} has colors; a tomogram has one gray value per voxel")
     whole = np.empty((first.shape[1], first.shape[0], len(numbers)), first.dtype)
     for k, number in enumerate(numbers):

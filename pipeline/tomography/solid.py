@@ -63,9 +63,11 @@ def segment(gray: Gray, threshold: float | None = None, smallest: int = 0, dark:
     from skimage.filters import threshold_otsu
     from skimage.measure import label
 
-    if not np.isfinite(gray.min()) or gray.min() == gray.max():
+    if not np.isfinite([gray.min(), gray.max()]).all() or gray.min() == gray.max():
         raise CaseError(f"the tomogram shows nothing: all of its {gray.size:,} voxels are alike, or are no numbers")
-    level = float(threshold_otsu(gray)) if threshold is None else threshold
+    # of whole numbers it counts every one between the least and the largest
+    shades = gray.astype(np.float32) if gray.dtype.itemsize > 2 else gray
+    level = float(threshold_otsu(shades)) if threshold is None else threshold
     # Otsu's value is the last one of the darker class
     solid = gray <= level if dark else gray > level
     islands = pores = 0

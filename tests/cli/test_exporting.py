@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ import trimesh
 from pipeline.export.formats.registry import WRITTEN
 from pipeline.export.read import read_mesh
 from pipeline.line.manifest import damaged, read_manifest
+from pipeline.line.places import remove
 from pipeline.line.run import Run
 from pipeline.mat.exchange import read_fibers
 from pipeline.nouns.fibers import Mat
@@ -135,3 +137,33 @@ def test_a_lone_format_that_fails_is_an_error_of_its_stage(fibertwin: Fibertwin,
     )  # fmt: skip
     assert said.code in (1, 2)
     assert said.err.count("error: ") == 1
+
+
+def test_a_folder_in_which_somebody_keeps_something_else_stays(
+    fibertwin: Fibertwin, finished: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "stl" / "mine").mkdir(parents=True)
+    (tmp_path / "stl" / "mine" / "thesis").write_text("three years")
+    said = fibertwin("export", finished, "--format", "stl", "--out", tmp_path, "--quiet")
+    assert said.code == 1
+    assert "stl holds 2 files and folders that this export does not write, first mine; move them" in said.err
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["mine", "stl", "thesis"]
+    # what an export wrote is written again
+    for _ in range(2):
+        assert fibertwin("export", finished, "--format", "csv", "--out", tmp_path, "--quiet").code == 0
+
+
+@pytest.mark.parametrize("place", ["export", "export/csv", "export/.csv.partial"])
+def test_no_link_in_a_run_blocks_an_export_or_is_followed(
+    fibertwin: Fibertwin, finished: Path, tmp_path: Path, place: str
+) -> None:
+    run, outside = tmp_path / "run", tmp_path / "outside"
+    shutil.copytree(finished, run)
+    outside.mkdir()
+    remove(run / place)
+    (run / place).symlink_to(outside)
+    for _ in range(2):
+        said = fibertwin("export", run, "--format", "csv", "--quiet")
+        assert said.code == 0, said.err
+    assert not list(outside.iterdir())
+    assert [path.name for path in (run / "export" / "csv").iterdir()] == ["fibers.csv"]

@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 
 from pipeline.errors import StageError
 from pipeline.export.formats import vtk_sizes
-from pipeline.export.formats.isolated import isolated
 from pipeline.export.formats.vtk import write_vtk
 from pipeline.export.read import read_mesh
 from pipeline.export.settings import ExportSettings, Format
 from pipeline.export.write import export
+from pipeline.isolated import isolated
 from tests.openfoam import AIR
 from tests.quality.test_kinds import beside_smaller
 from tests.sample_meshes import duct

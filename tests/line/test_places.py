@@ -82,9 +82,13 @@ def test_files_and_folders_of_the_run_are_its_own(obstacle: str, tmp_path: Path,
         OBSTACLES[obstacle](tmp_path / "picture.png", outside)
         own_file(tmp_path / "picture.png").write_text("drawn")
     OBSTACLES[obstacle](tmp_path / "pictures", outside)
-    (own_folder(tmp_path / "pictures") / "a").write_text("drawn")
+    (own_folder(tmp_path, "pictures") / "a").write_text("drawn")
     assert content(outside) == before
     remove(tmp_path / "pictures")
+    assert content(outside) == before
+    # and a folder deeper down, whose way leads through what stands there
+    OBSTACLES[obstacle](tmp_path / "work", outside)
+    (own_folder(tmp_path, "work", "in", "deeper") / "a").write_text("made")
     assert content(outside) == before
 
 

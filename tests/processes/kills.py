@@ -152,6 +152,11 @@ def main() -> int:
     """Kill as many runs of each variant as asked for; exit code 1 if anything was left or came out otherwise."""
     count, part = int(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else ""
     failed = 0
+
+    def tell(words: str) -> None:
+        sys.stdout.write(f"{words}\n")
+        sys.stdout.flush()
+
     for name, variant in VARIANTS.items():
         if part not in name or not variant.possible:
             continue
@@ -161,13 +166,13 @@ def main() -> int:
         draw = random.Random(name)
         for _ in range(count):
             try:
-                kills.kill(draw)
+                tell(f"  {name}: {kills.kill(draw)}: held")
             except AssertionError as problem:
                 bad.append(str(problem))
+                tell(f"  {name}: {problem}")
         failed += len(bad)
         outcome = "held" if not bad else "; ".join(bad)
-        sys.stdout.write(f"{name}: {count} kills in {time.monotonic() - began:.0f} s: {outcome}\n")
-        sys.stdout.flush()
+        tell(f"{name}: {count} kills in {time.monotonic() - began:.0f} s: {outcome}")
         if not bad:
             shutil.rmtree(place)
     return 1 if failed else 0

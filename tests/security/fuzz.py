@@ -12,6 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tests.security.inputs import TARGETS
+from tests.security.pictures import TARGETS as PICTURES
 from tests.security.run_folders import TARGETS as RUN_FOLDERS
 
 MEMORY = 6 * 2**30
@@ -36,7 +37,7 @@ def main() -> int:
     count, part = int(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else ""
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     failed = 0
-    for name, target in {**TARGETS, **RUN_FOLDERS}.items():
+    for name, target in {**TARGETS, **PICTURES, **RUN_FOLDERS}.items():
         if part not in name:
             continue
         many, drawn = drawing(target, count)

@@ -7,6 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tests.security.inputs import TARGETS
+from tests.security.pictures import TARGETS as PICTURES
 from tests.security.run_folders import TARGETS as RUN_FOLDERS
 
 
@@ -22,3 +23,10 @@ def test_only_a_result_or_our_own_error_comes_out(name: str, data: st.DataObject
 @given(data=st.data())
 def test_a_run_in_a_broken_folder_gives_the_same_results_or_our_own_error(name: str, data: st.DataObject) -> None:
     RUN_FOLDERS[name](data)
+
+
+@pytest.mark.parametrize("name", PICTURES)
+@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+@given(data=st.data())
+def test_a_picture_or_a_tomogram_is_read_or_refused(name: str, data: st.DataObject) -> None:
+    PICTURES[name](data)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import os
 import subprocess
 import sys
 import time
@@ -18,6 +19,7 @@ from pipeline.solve.settings import OpenFoamSettings
 from pipeline.solve.states import saved
 from tests.openfoam import AIR
 from tests.sample_meshes import duct
+from tests.security.inputs import in_time
 
 SIZE = (10e-6, 10e-6, 20e-6)
 # a bar of 4 um in a slab of 10 um
@@ -231,3 +233,15 @@ def test_a_case_is_solved_wherever_it_lies(name: str, tmp_path: Path) -> None:
     for cores in (1, 2) if "blanks" in name else (1,):
         settings = OpenFoamSettings(cores=cores)
         assert solve(case, tmp_path / name / f"work{cores}", AIR, BED, settings).converged
+
+
+@pytest.mark.openfoam
+def test_what_a_case_holds_beside_its_files_is_not_copied(tmp_path: Path) -> None:
+    # a pipe and a device would be read for good, and a link may lead to all of a disk
+    case = bar_case(tmp_path / "case", cells=4)
+    os.mkfifo(case / "constant" / "pipe")
+    (case / "system" / "endless").symlink_to("/dev/zero")
+    (case / "disk").symlink_to("/")
+    with in_time():
+        solve(case, tmp_path / "work", AIR, BED, OpenFoamSettings(max_iterations=5))
+    assert {path.name for path in (tmp_path / "work").rglob("*")}.isdisjoint({"pipe", "endless", "disk"})

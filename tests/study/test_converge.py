@@ -3,17 +3,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import json
+import os
 from pathlib import Path
 
 import pytest
 
 from pipeline.case import Case, read_case
 from pipeline.errors import CaseError, StageError
-from pipeline.nouns.convergence import MeshRung, convergence_tables
+from pipeline.nouns.convergence import MeshRung, convergence_tables, read_convergence
 from pipeline.progress import Progress, silent
 from pipeline.study import converge as module
 from pipeline.study.converge import converge
 from tests.cli.conftest import Fibertwin, fibertwin
+from tests.security.inputs import in_time
 
 __all__ = ["fibertwin"]
 SMOKE = Path(__file__).parent.parent.parent / "cases" / "smoke.toml"
@@ -88,3 +90,33 @@ def test_the_command_leaves_its_result_a_plot_and_the_budget_on_the_page(fibertw
     assert len(found["rungs"]) == 3
     assert (tmp_path / "convergence.svg").is_file()
     assert "pressure drop and what moves it" in (tmp_path / "report" / "report.html").read_text()
+
+
+@pytest.mark.parametrize("obstacle", ["pipe", "device", "link", "text", "deep"])
+def test_what_somebody_put_in_the_place_of_the_result_is_none(obstacle: str, tmp_path: Path) -> None:
+    path = tmp_path / "convergence.json"
+    match obstacle:
+        case "pipe":
+            os.mkfifo(path)
+        case "device":
+            path.symlink_to("/dev/zero")
+        case "link":
+            (tmp_path / "outside.json").write_text("{}")
+            path.symlink_to(tmp_path / "outside.json")
+        case "text":
+            path.write_bytes(b"\xff{")
+        case _:
+            path.write_text("[" * 100_000)
+    with in_time():
+        assert read_convergence(tmp_path) is None
+
+
+def test_runs_beside_a_case_stay_within_its_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "convergence").symlink_to(outside)
+    faked(monkeypatch, 2.0)
+    converge(read_case(SMOKE), tmp_path / "run", 2, silent)
+    assert not list(outside.iterdir())
+    assert (tmp_path / "run" / "convergence" / "coarse").is_dir()

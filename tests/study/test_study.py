@@ -145,6 +145,18 @@ def test_a_failing_run_is_recorded_and_ends_nothing(study: Study, here: list[Tas
     assert (again.failed, again.reused) == (3, 3)
 
 
+def test_nothing_of_a_study_is_written_outside_its_folder(study: Study, here: list[Task], tmp_path: Path) -> None:
+    outside, folder = tmp_path / "outside", tmp_path / "study"
+    outside.mkdir()
+    folder.mkdir()
+    for name in ("results", "work"):
+        (folder / name).symlink_to(outside)
+    carry_out_study(study, folder)
+    assert here
+    assert not list(outside.iterdir())
+    assert not (folder / "results").is_symlink()
+
+
 def test_a_bug_in_a_run_is_recorded_with_its_traceback(
     study: Study, here: list[Task], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -177,9 +189,8 @@ def test_two_studies_do_not_share_a_folder_at_once(study: Study, tmp_path: Path)
 
 def test_workers_of_their_own_give_the_same(study: Study, here: list[Task], tmp_path: Path) -> None:
     tasks = plan(study.model_copy(update={"seeds": 1}), tmp_path / "dask")
-    # a worker cannot write where a file stands
-    (tmp_path / "dask" / "work").mkdir(parents=True)
-    tasks[0].work.write_text("in the way", encoding="utf-8")
+    # a worker cannot lock what is a folder
+    (tasks[0].work / ".lock").mkdir(parents=True)
     outcomes = {task.point: outcome for task, outcome in carried_out(tasks, 1, None)}
     assert isinstance(outcomes[0], StageError)
     alone = carry_out_study(study, tmp_path / "here").points[1].runs[0]

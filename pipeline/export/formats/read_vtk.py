@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from pipeline.export.formats.file_mesh import Cells, FileMesh, NamedFaces, PolyhedralCells, face_mesh, named
-from pipeline.export.formats.isolated import isolated
 from pipeline.export.formats.reading import damage_told
 from pipeline.export.formats.vtk_sizes import check_legacy, check_xml
+from pipeline.isolated import isolated
 from pipeline.nouns.arrays import Floats, Ints, require
 from pipeline.nouns.mesh import FaceMesh
 

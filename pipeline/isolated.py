@@ -14,6 +14,8 @@ from typing import TypeVar
 
 import psutil
 
+from pipeline.errors import FibertwinError
+
 _T = TypeVar("_T")
 _SECONDS = 60.0
 _PR_SET_PDEATHSIG = 1  # of prctl(2)
@@ -28,8 +30,8 @@ def isolated(read: Callable[[Path], _T], path: Path) -> _T:
     Parameters
     ----------
     read : function of a path
-        Its modules are imported already; what it gives can be pickled. It raises ValueError for a file that it does
-        not take.
+        Its modules are imported already; what it gives can be pickled. It raises ValueError, or an error of ours, for
+        a file that it does not take.
     path : Path
 
     Raises
@@ -89,7 +91,7 @@ def _answer(read: Callable[[Path], _T], path: Path, to: Connection, seconds: flo
     found: object
     try:
         found = read(path)
-    except (ValueError, ArithmeticError, LookupError, MemoryError) as problem:
+    except (FibertwinError, ValueError, ArithmeticError, LookupError, MemoryError) as problem:
         found = problem
     except BaseException as bug:  # it is raised again in the parent
         found = RuntimeError("".join(traceback.format_exception(bug)))
