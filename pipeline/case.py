@@ -99,9 +99,14 @@ def read_case(path: Path, overrides: tuple[str, ...] = ()) -> Case:
     """
     case = validate(override(read_toml(path), overrides), str(path))
     if isinstance(case.mat, FileSettings | SurfaceFileSettings):
-        # a path in a case file starts from the case file, wherever the command is run
-        case = case.model_copy(update={"mat": case.mat.model_copy(update={"file": path.parent / case.mat.file})})
-    return case
+        case = _beside(case, "mat", path.parent)
+    return _beside(case, "micrograph", path.parent) if case.micrograph.file is not None else case
+
+
+def _beside(case: Case, table: str, folder: Path) -> Case:
+    """Let the path in a table start from the case file, wherever the command is run."""
+    settings = getattr(case, table)
+    return case.model_copy(update={table: settings.model_copy(update={"file": folder / settings.file})})
 
 
 def read_toml(path: Path) -> dict[str, Any]:

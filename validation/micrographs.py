@@ -15,7 +15,7 @@ from pipeline.mat.generate import generate
 from pipeline.mat.settings import Isotropic, LayeredSettings, Lognormal, Mixture, Part, Stop, VonMises
 from pipeline.micrograph.laws import diameter_laws, orientation_law
 from pipeline.micrograph.measure import Floats, measure
-from pipeline.micrograph.synthetic import Exposure, micrograph_of
+from pipeline.microscope.synthetic import Exposure, micrograph_of
 from pipeline.nouns.fibers import Mat
 
 UM = 1e-6

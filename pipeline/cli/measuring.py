@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import json
+import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -16,8 +17,8 @@ from pipeline.line.places import disk_trouble_explained
 from pipeline.micrograph.case import case_of
 from pipeline.micrograph.measure import Interval, Measured, measure
 from pipeline.micrograph.page import facts, write_page
-from pipeline.micrograph.picture import Micrograph
-from pipeline.micrograph.read import Window, read_micrograph
+from pipeline.microscope.picture import Micrograph
+from pipeline.microscope.read import Window, read_micrograph
 from pipeline.units import FROM_FILE, Length
 
 
@@ -39,7 +40,8 @@ def measure_picture(
     if case is not None:
         with disk_trouble_explained(case):
             case.parent.mkdir(parents=True, exist_ok=True)
-            case.write_text(case_of(measured, picture.origin), encoding="utf-8")
+            text = case_of(measured, picture.origin, path_beside(path, case), picture.pixel)
+            case.write_text(text, encoding="utf-8")
     page = page or Path("runs") / path.stem / "micrograph.html"
     with disk_trouble_explained(page):
         write_page(picture, measured, page)
@@ -55,6 +57,11 @@ def measure_picture(
     for what, file in (("look at it:", page), ("run it: fibertwin run", case)):
         if file is not None:
             out.print(what, file, markup=False, highlight=False, soft_wrap=True)
+
+
+def path_beside(picture: Path, case: Path | None) -> str:
+    """Give the path of a picture from the folder of a case file, or from here where that has no place."""
+    return Path(os.path.relpath(picture, case.parent if case is not None else Path())).as_posix()
 
 
 def read_length(text: str | None, option: str) -> float | None:
@@ -118,10 +125,8 @@ def take_picture(
     source: Path, into: Path, pixel: str | None, depth: str | None, edge: float, blur: float, noise: float, seed: int
 ) -> None:
     """Write the micrograph that a case's or a run's mat would give."""
-    from PIL import Image
-    from PIL.PngImagePlugin import PngInfo
-
-    from pipeline.micrograph.synthetic import Exposure, micrograph_of
+    from pipeline.microscope.synthetic import Exposure, micrograph_of
+    from pipeline.microscope.write import write_png
 
     mat = _mat_of(source)
     length = read_length(pixel, "--pixel") or 2.0 * float(mat.radius.mean()) / 20.0
@@ -129,13 +134,9 @@ def take_picture(
     picture = micrograph_of(mat, length, Exposure(shade, edge, blur, noise, seed))
     if into.suffix.lower() != ".png":
         raise CaseError(f"{into}: a micrograph is written as .png")
-    notes = PngInfo()
-    notes.add_text("Description", picture.origin)
     with disk_trouble_explained(into):
         into.parent.mkdir(parents=True, exist_ok=True)
-        # so that `measure` finds the scale in the file
-        image = Image.fromarray((255 * picture.brightness).round().astype("uint8"))
-        image.save(into, pnginfo=notes, dpi=(0.0254 / length, 0.0254 / length))
+        write_png(picture, into)
 
 
 def _mat_of(source: Path) -> Any:

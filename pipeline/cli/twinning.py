@@ -12,6 +12,7 @@ from rich.console import Console
 
 from pipeline.case import override, read_toml, validate_as
 from pipeline.cli.listen import listening
+from pipeline.cli.measuring import path_beside
 from pipeline.cli.tables import plain_table
 from pipeline.errors import CaseError
 from pipeline.line.places import disk_trouble_explained
@@ -47,7 +48,8 @@ def find_twin(
         progress("the fibers")
         fibers = fibers_of(measured)
         twin = match(measured, fibers, solver(folder, progress) if solve else None, progress)
-    text = twin.text(head_of(twin))
+    picture = None if fibers.picture is None else path_beside(fibers.picture, case)
+    text = twin.text(head_of(twin), picture)
     if case is not None:
         with disk_trouble_explained(case):
             case.parent.mkdir(parents=True, exist_ok=True)

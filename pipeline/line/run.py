@@ -218,16 +218,16 @@ def wanted(case: Case, until: str) -> list[Stage]:
     """Give the stages that lead to one: all before it, but those that run only when asked only if they are.
 
     A stage is asked for by its table in the case file, by its name, or by a stage that needs it. A run that is asked
-    for such a stage goes on to its report.
+    for such a stage at the end of the line goes on to its report.
     """
     asked = set(case.asked)
     for stage in reversed(LINE):
         if stage.name == until or stage.name in asked:
             asked |= {source.name for noun in stage.needs(case) if (source := giver(LINE, noun)).asked}
             asked.add(stage.name)
-    last = STAGES.index(until)
-    if LINE[last].asked:
-        last = max(last, STAGES.index(LAST))
+    last, end = STAGES.index(until), STAGES.index(LAST)
+    if all(stage.asked for stage in LINE[last:end]):
+        last = max(last, end)
     return [stage for stage in LINE[: last + 1] if not stage.asked or stage.name in asked]
 
 

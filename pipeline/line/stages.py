@@ -10,6 +10,7 @@ from pipeline.export.stage import EXPORT
 from pipeline.line.stage import Stage
 from pipeline.mat.stage import MAT
 from pipeline.mesh.stage import TETMESH
+from pipeline.microscope.stage import MICROGRAPH
 from pipeline.quality.stage import QUALITY
 from pipeline.report.stage import REPORT
 from pipeline.solve.stage import SOLVE
@@ -17,6 +18,7 @@ from pipeline.surface.stage import SURFACE
 
 LINE: tuple[Stage, ...] = (
     MAT,
+    MICROGRAPH,
     SURFACE,
     ENCLOSURE,
     TETMESH,

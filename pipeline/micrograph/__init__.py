@@ -1,3 +1,3 @@
-"""Micrographs: pictures of fibers, what can be measured in them, and the picture that a twin would give."""
+"""What can be measured in micrographs, pictures of fibers."""
 
 # SPDX-License-Identifier: GPL-3.0-or-later

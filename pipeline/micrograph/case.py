@@ -2,18 +2,20 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import json
 import math
 
 from pipeline.mat.case_lines import table_lines
 from pipeline.mat.settings import Isotropic, Lognormal, Mixture, Normal, Part, VonMises
 from pipeline.micrograph.laws import DiameterLaw, OrientationLaw
 from pipeline.micrograph.measure import Measured
+from pipeline.units import written
 
 _DIAMETERS_ACROSS = 30
 """Mean diameters on a side of the plan: enough fibers for a mean, few enough to mesh in minutes."""
 
 
-def case_of(measured: Measured, origin: str) -> str:
+def case_of(measured: Measured, origin: str, picture: str, pixel: float) -> str:
     """Write a case file (TOML) whose mat has the diameters and directions that were measured.
 
     Parameters
@@ -21,6 +23,9 @@ def case_of(measured: Measured, origin: str) -> str:
     measured : Measured
     origin : str
         Of the picture, for people to read.
+    picture : str
+        Its path from the case file's folder.
+    pixel : float [m]
 
     Returns
     -------
@@ -52,8 +57,21 @@ def case_of(measured: Measured, origin: str) -> str:
         "[flow]",
         'face_velocity = "2.5 cm/s"',
         'temperature = "293 K"',
+        *picture_lines(picture, pixel),
     ]
     return "\n".join(lines) + "\n"
+
+
+def picture_lines(picture: str, pixel: float) -> list[str]:
+    """Write the table that lets a run show the mat beside a picture, from the case file's folder, at its scale [m]."""
+    # what TOML and JSON write between quotes is the same but for signs that no path has
+    quoted = json.dumps(picture, ensure_ascii=False)
+    return [
+        "",
+        "[micrograph]   # the page shows the mat beside it",
+        f"file = {quoted}",
+        f'pixel = "{written(float(f"{pixel:.6g}"), "m")}"',
+    ]
 
 
 def side_for(diameter: float) -> float:

@@ -12,7 +12,7 @@ from pipeline.errors import CaseError
 from pipeline.micrograph.clean import without_streaks
 from pipeline.micrograph.fibers import FiberSeen, Sight, fibers_of
 from pipeline.micrograph.laws import DiameterLaw, OrientationLaw, diameter_laws, orientation_law
-from pipeline.micrograph.picture import Micrograph
+from pipeline.microscope.picture import Micrograph
 
 Floats = npt.NDArray[np.float64]
 

@@ -14,8 +14,8 @@ import numpy.typing as npt
 
 from pipeline.micrograph.laws import DiameterLaw, Floats
 from pipeline.micrograph.measure import Interval, Measured
-from pipeline.micrograph.picture import Micrograph
 from pipeline.micrograph.ribbons import Image
+from pipeline.microscope.picture import Micrograph
 from pipeline.report.page.svg import BLUE, INK, ORANGE, chart
 
 if TYPE_CHECKING:

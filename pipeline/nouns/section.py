@@ -46,6 +46,21 @@ class Pictures:
 
 
 @dataclass(frozen=True, slots=True)
+class Photograph:
+    """A picture that is there already, by the address of its own content (``data:``); empty where it is lost."""
+
+    source: str
+    caption: str
+
+
+@dataclass(frozen=True, slots=True)
+class Photographs:
+    """Such pictures side by side."""
+
+    pictures: tuple[Photograph, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Text:
     """A paragraph; `mark` is ``""``, ``"soft"``, ``"good"``, ``"note"`` or ``"bad"``."""
 
@@ -69,7 +84,7 @@ class Columns:
     even: bool = False
 
 
-Part = Table | Facts | Charts | Picture | Pictures | Text | Heading | Columns
+Part = Table | Facts | Charts | Picture | Pictures | Photographs | Text | Heading | Columns
 """What a section is made of."""
 
 

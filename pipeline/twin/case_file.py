@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pipeline.analytics.settings import FlowSettings
 from pipeline.design.packing import Place
 from pipeline.mat.case_lines import table_lines
+from pipeline.micrograph.case import picture_lines
 from pipeline.twin.fibers import Diameters, FiberLaws, scaled
 from pipeline.units import written
 
@@ -33,7 +34,14 @@ class Choice:
 
 
 def case_text(
-    fibers: FiberLaws, side: float, contact: str, flow: FlowSettings, choice: Choice, solved: bool, head: str
+    fibers: FiberLaws,
+    side: float,
+    contact: str,
+    flow: FlowSettings,
+    choice: Choice,
+    solved: bool,
+    head: str,
+    picture: str | None = None,
 ) -> str:
     """Write the case file (TOML) of a mat.
 
@@ -48,6 +56,8 @@ def case_text(
         Whether the flow is solved.
     head : str
         Comment at the top, line by line without their signs.
+    picture : str, optional
+        Path of the micrograph from the case file's folder.
     """
     slope, spacing = choice.place
     law: Diameters = scaled(fibers.diameters, choice.scale)
@@ -77,6 +87,8 @@ def case_text(
         f'pressure = "{written(flow.pressure, "Pa")}"',
         f'pressure_model = "{flow.pressure_model}"',
     ]
+    if picture is not None and fibers.pixel is not None:
+        lines += picture_lines(picture, fibers.pixel)
     if solved:
         lines += ["", "[solve]   # the flow, to hold beside what was measured", 'engine = "stokes"']
     return "\n".join(lines) + "\n"

@@ -25,7 +25,7 @@ from pipeline.mat.settings import (
 from pipeline.micrograph.case import diameters_of, orientation_of, side_for
 from pipeline.micrograph.laws import DiameterLaw, OrientationLaw
 from pipeline.micrograph.measure import measure
-from pipeline.micrograph.read import read_micrograph
+from pipeline.microscope.read import read_micrograph
 from pipeline.reading import read_bytes
 from pipeline.twin.measurement import Measurement
 from pipeline.twin.settings import MeasuredFilter

@@ -104,10 +104,10 @@ class Twin:
         """Largest miss in tolerances; what is at most 1 is matched."""
         return max(abs(miss) for miss in self.misses.values())
 
-    def text(self, head: str) -> str:
-        """Write its case file with a comment at the top."""
+    def text(self, head: str, picture: str | None = None) -> str:
+        """Write its case file with a comment at the top, and the path of the micrograph from the file's folder."""
         solved = "pressure_drop" in self.measured
-        return case_text(self.fibers, self.side, self.contact, self.flow, self.choice, solved, head)
+        return case_text(self.fibers, self.side, self.contact, self.flow, self.choice, solved, head, picture)
 
 
 def match(given: MeasuredFilter, fibers: FiberLaws, solver: Solver | None = None, progress: Progress = silent) -> Twin:

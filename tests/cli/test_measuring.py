@@ -45,7 +45,7 @@ def test_a_picture_becomes_numbers_a_page_and_a_case(
 
 
 def test_a_picture_of_a_case_says_its_own_scale(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from pipeline.micrograph.read import read_micrograph
+    from pipeline.microscope.read import read_micrograph
 
     monkeypatch.chdir(tmp_path)
     assert fibertwin(monkeypatch, "micrograph", "smoke", "mat.png", "--pixel", "50 nm") == 0

@@ -78,9 +78,12 @@ def test_the_case_of_a_picture_is_a_case_with_its_laws(law: DiameterLaw, tmp_pat
         (law,), OrientationLaw("isotropic", 0.0, 0.0, 0.0), 0.3, 0.0, 1.0, 0.0, (),
     )  # fmt: skip
     path = tmp_path / "my_filter.toml"
-    path.write_text(case_of(measured, "read from a.png\nwith two lines"), encoding="utf-8")
-    mat = read_case(path).mat
+    path.write_text(case_of(measured, "read from a.png\nwith two lines", 'a "b"\\c.png', 25e-9), encoding="utf-8")
+    case = read_case(path)
+    mat = case.mat
+    assert case.micrograph.file == tmp_path / 'a "b"\\c.png'
+    assert case.micrograph.pixel == 25e-9
     assert mat.fiber_diameter.distribution == law.name
     turned = dataclasses.replace(measured, orientation=OrientationLaw("von_mises", 30.0, 2.0, 0.7))
-    path.write_text(case_of(turned, "read from a.png"), encoding="utf-8")
+    path.write_text(case_of(turned, "read from a.png", "a.png", 25e-9), encoding="utf-8")
     assert read_case(path).mat.orientation.concentration == 2.0

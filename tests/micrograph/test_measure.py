@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from pipeline.errors import CaseError
-from pipeline.micrograph.clean import strip_rows
 from pipeline.micrograph.measure import measure
-from pipeline.micrograph.picture import Micrograph
+from pipeline.microscope.picture import Micrograph
+from pipeline.microscope.strip import strip_rows
 from tests.micrograph.drawn import Picture, bands
 
 SHAPE = (360, 380)

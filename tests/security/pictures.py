@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from pipeline.line.places import remove
-from pipeline.micrograph.read import read_micrograph
+from pipeline.microscope.read import read_micrograph
 from pipeline.tomography.read import read_voxels
 from pipeline.tomography.solid import segment
 from tests.security.inputs import damaged, folder, refused_or_read

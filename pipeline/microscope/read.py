@@ -13,9 +13,9 @@ import numpy.typing as npt
 
 from pipeline.errors import CaseError
 from pipeline.isolated import isolated
-from pipeline.micrograph.clean import strip_rows
-from pipeline.micrograph.picture import Micrograph
-from pipeline.micrograph.scale import bar_length, credible, scale_of_tiff
+from pipeline.microscope.picture import Micrograph
+from pipeline.microscope.scale import bar_length, credible, scale_of_tiff
+from pipeline.microscope.strip import strip_rows
 from pipeline.reading import open_file
 
 LARGEST = 24_000_000

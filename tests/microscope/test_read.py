@@ -11,7 +11,7 @@ import tifffile
 from PIL import Image
 
 from pipeline.errors import CaseError
-from pipeline.micrograph.read import read_micrograph
+from pipeline.microscope.read import read_micrograph
 from tests.micrograph.drawn import as_bytes, bands
 
 PICTURE = bands(np.full(5, 10.0), (120, 140), seed=1)

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from pipeline.errors import CaseError
 from pipeline.geometry.compiled import compiled
-from pipeline.micrograph.picture import Micrograph
+from pipeline.microscope.picture import Micrograph
 from pipeline.nouns.fibers import Mat
 
 _LARGEST_PICTURE = 100_000_000

@@ -7,7 +7,7 @@ import pytest
 
 from pipeline.errors import CaseError
 from pipeline.geometry.box import Box
-from pipeline.micrograph.synthetic import Exposure, look_down, micrograph_of
+from pipeline.microscope.synthetic import Exposure, look_down, micrograph_of
 from pipeline.nouns.fibers import Mat
 
 UM = 1e-6
