@@ -59,9 +59,9 @@ def run(
     out
         Folder of this run; ``runs/<name of the case file>`` if left out.
     until
-        Last stage to run: mat, micrograph, surface, enclosure, tetmesh, quality, export, compare, solve, capture or
-        report; report if left out. Micrograph, solve and capture run only where the case file has their table, or this
-        says so.
+        Last stage to run: mat, micrograph, surface, structure, enclosure, tetmesh, quality, export, compare, solve,
+        capture or report; report if left out. Micrograph, structure, solve and capture run only where the case file
+        has their table, or this says so.
     set_
         Override a key of the case file: ``--set mat.seed=7``. May be repeated.
     force

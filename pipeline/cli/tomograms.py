@@ -15,13 +15,14 @@ from pipeline.cli.measuring import read_length
 from pipeline.errors import CaseError
 from pipeline.geometry.triangles import area_vectors, enclosed_volume
 from pipeline.line.places import disk_trouble_explained
+from pipeline.nouns.structure import SpecificSurface, Structure
 from pipeline.progress import Progress
+from pipeline.structure.measure import structure_of
+from pipeline.structure.tables import structure_rows
 from pipeline.tomography.contour import surface_of
-from pipeline.tomography.pores import pores_of
 from pipeline.tomography.read import MEMORY_PER_VOXEL, read_voxels
+from pipeline.tomography.room import room_between
 from pipeline.tomography.solid import segment
-
-_PORES = (("median", "median"), ("largest", "largest"), ("bubble point", "bubble_point"))
 
 
 def surface_of_tomogram(
@@ -57,6 +58,10 @@ def surface_of_tomogram(
     progress("making the surface")
     points, triangles = surface_of(found.solid, edge)
     size = np.array(found.solid.shape) * edge
+    volume, area = enclosed_volume(points, triangles), _free_area(points, triangles, size)
+    progress("measuring the pores")
+    surface_told = SpecificSurface(per_volume=area / float(np.prod(size)), per_solid=area / volume)
+    structure = structure_of(room_between(found.solid, edge), periodic=False, surface=surface_told)
     told = {
         "voxels": list(found.solid.shape),
         "size": size.tolist(),
@@ -65,11 +70,11 @@ def surface_of_tomogram(
         "closed_pores": found.pores,
         "solidity": {
             "voxels": found.solidity,
-            "surface": enclosed_volume(points, triangles) / float(np.prod(size)),
+            "surface": volume / float(np.prod(size)),
         },
         "triangles": len(triangles),
-        "mean_diameter": _mean_diameter(points, triangles, size),
-        "pores": dataclasses.asdict(pores_of(found.solid, edge)),
+        "mean_diameter": 4.0 * volume / area,
+        "structure": dataclasses.asdict(structure),
         "surface": str(into),
     }
     with disk_trouble_explained(into):
@@ -81,18 +86,17 @@ def surface_of_tomogram(
     if as_json:
         sys.stdout.write(json.dumps(told, indent=2, allow_nan=False) + "\n")
     elif not quiet:
-        _show(told, into, case)
+        _show(told, structure, into, case)
 
 
-def _mean_diameter(points: np.ndarray[Any, Any], triangles: np.ndarray[Any, Any], size: np.ndarray[Any, Any]) -> float:
-    """Four times volume over area, without what the window's sides cut [m]."""
+def _free_area(points: np.ndarray[Any, Any], triangles: np.ndarray[Any, Any], size: np.ndarray[Any, Any]) -> float:
+    """Area without what the window's six sides cut [m2]."""
     corners = points[triangles]
     on_side = np.zeros(len(triangles), dtype=bool)
     for axis in range(3):
         for place in (0.0, size[axis]):
             on_side |= (corners[:, :, axis] == place).all(axis=1)
-    area = float(np.linalg.norm(area_vectors(points, triangles)[~on_side], axis=1).sum())
-    return 4.0 * enclosed_volume(points, triangles) / area
+    return float(np.linalg.norm(area_vectors(points, triangles)[~on_side], axis=1).sum())
 
 
 def _write(path: Path, points: np.ndarray[Any, Any], triangles: np.ndarray[Any, Any]) -> None:
@@ -125,7 +129,7 @@ def _case(surface: Path, case: Path, source: Path) -> str:
     )
 
 
-def _show(told: dict[str, Any], into: Path, case: Path | None) -> None:
+def _show(told: dict[str, Any], structure: Structure, into: Path, case: Path | None) -> None:
     out = Console()
 
     def show(text: str) -> None:
@@ -138,9 +142,8 @@ def _show(told: dict[str, Any], into: Path, case: Path | None) -> None:
     show(f"threshold       {told['threshold']:g}; {left_out}")
     show(f"solidity        {share['voxels']:.3%} of the voxels, {share['surface']:.3%} within the surface")
     show(f"mean diameter   {1e6 * told['mean_diameter']:.4g} um, from volume over surface")
-    pores = told["pores"]
-    spheres = ", ".join(f"{name} {1e6 * pores[key]:.4g} um" for name, key in _PORES)
-    show(f"pores           {spheres}, by spheres that fit in")
+    for name, text in structure_rows(structure):
+        show(f"{name:<15} {text}")
     show(f"surface         {into}, {told['triangles']:,} triangles, in um")
     if case is not None:
         show(f"run it: fibertwin run {case}")

@@ -2,6 +2,8 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
@@ -26,6 +28,28 @@ def area_vectors(points: Floats, triangles: Ints) -> Floats:
     """
     a, b, c = (points[triangles[:, k]] for k in range(3))
     return 0.5 * np.cross(b - a, c - a)
+
+
+def on_sides(points: Floats, triangles: Ints, lower: Sequence[float], upper: Sequence[float]) -> npt.NDArray[np.bool_]:
+    """Tell which triangles lie flat on a side of a box, across x or y, as a cut there leaves them.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+    triangles : (m, 3) int array
+    lower, upper : sequences of floats
+        Corners of the box.
+
+    Returns
+    -------
+    (m,) bool array
+    """
+    corners = points[triangles]
+    found = np.zeros(len(triangles), dtype=bool)
+    for axis in (0, 1):
+        for place in (lower[axis], upper[axis]):
+            found |= (corners[:, :, axis] == place).all(axis=1)
+    return found
 
 
 def enclosed_volume(points: Floats, triangles: Ints) -> float:

@@ -14,12 +14,14 @@ from pipeline.microscope.stage import MICROGRAPH
 from pipeline.quality.stage import QUALITY
 from pipeline.report.stage import REPORT
 from pipeline.solve.stage import SOLVE
+from pipeline.structure.stage import STRUCTURE
 from pipeline.surface.stage import SURFACE
 
 LINE: tuple[Stage, ...] = (
     MAT,
     MICROGRAPH,
     SURFACE,
+    STRUCTURE,
     ENCLOSURE,
     TETMESH,
     QUALITY,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pipeline.geometry.box import Box
-from pipeline.geometry.triangles import enclosed_volume, unmatched_edges
+from pipeline.geometry.triangles import area_vectors, enclosed_volume, on_sides, unmatched_edges
 from pipeline.nouns.arrays import Floats, Ints, freeze, require
 from pipeline.nouns.fibers import Pieces
 
@@ -66,3 +66,9 @@ class Surface:
     def solidity(self) -> float:
         """Solid volume over the slab's volume [-]."""
         return self.volume / self.slab.volume
+
+    @property
+    def free_area(self) -> float:
+        """Area that air can meet: without the flat cuts on the plan's sides [m2]."""
+        cut = on_sides(self.points, self.triangles, self.slab.lower, self.slab.upper)
+        return float(np.linalg.norm(area_vectors(self.points, self.triangles)[~cut], axis=1).sum())

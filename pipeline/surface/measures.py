@@ -86,10 +86,6 @@ def measure_surface(
         single[k] = volume_within([bodies[before[k]], bodies[k]], limits) - alone[before[k]]
     vectors = area_vectors(points, triangles)
     corners = points[triangles]
-    on_side = np.zeros(len(triangles), dtype=bool)
-    for axis in (0, 1):
-        for place in (surface.slab.lower[axis], surface.slab.upper[axis]):
-            on_side |= (corners[:, :, axis] == place).all(axis=1)
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     with np.errstate(divide="ignore"):
         slenderness = longest**2 / (2.0 * np.linalg.norm(vectors, axis=1))
@@ -101,7 +97,7 @@ def measure_surface(
     return SurfaceMeasures(
         triangles=len(triangles),
         points=len(points),
-        area=float(np.linalg.norm(vectors[~on_side], axis=1).sum()),
+        area=surface.free_area,
         volume=surface.volume,
         solidity=surface.solidity,
         overlap_volume=float(np.sum(single) - signed_volumes(points, triangles).sum()),

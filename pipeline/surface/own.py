@@ -12,7 +12,14 @@ from pipeline.errors import CaseError
 from pipeline.geometry.box import Box
 from pipeline.geometry.crossings import crossing_pairs
 from pipeline.geometry.solids import unite_within
-from pipeline.geometry.triangles import area_vectors, connected_pieces, enclosed_volume, signed_volumes, unmatched_edges
+from pipeline.geometry.triangles import (
+    area_vectors,
+    connected_pieces,
+    enclosed_volume,
+    on_sides,
+    signed_volumes,
+    unmatched_edges,
+)
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.fibers import Pieces
 from pipeline.nouns.surface import Surface
@@ -94,7 +101,8 @@ def read_body(source: SurfaceFile, progress: Progress = silent) -> tuple[Surface
     _refuse_unit(points, sound.triangles, path)
     _refuse_shells_that_cut_themselves(points, sound.triangles, path)
     points, triangles, slab = _cut(points, sound.triangles, source.side, path)
-    area = _free_area(points, triangles, slab)
+    free = ~on_sides(points, triangles, slab.lower, slab.upper)
+    area = float(np.linalg.norm(area_vectors(points, triangles)[free], axis=1).sum())
     volume = enclosed_volume(points, triangles)
     diameter = 4.0 * volume / area
     none = np.zeros((0, 3))
@@ -217,15 +225,6 @@ def _is_flush(points: Floats, triangles: Ints, axis: int, place: float, size: Fl
 
 def _total_area(points: Floats, triangles: Ints) -> float:
     return float(np.linalg.norm(area_vectors(points, triangles), axis=1).sum())
-
-
-def _free_area(points: Floats, triangles: Ints, slab: Box) -> float:
-    corners = points[triangles]
-    on_side = np.zeros(len(triangles), dtype=bool)
-    for axis in (0, 1):
-        for place in (slab.lower[axis], slab.upper[axis]):
-            on_side |= (corners[:, :, axis] == place).all(axis=1)
-    return float(np.linalg.norm(area_vectors(points, triangles)[~on_side], axis=1).sum())
 
 
 def _refuse_shells_that_cut_themselves(points: Floats, triangles: Ints, path: Path) -> None:
