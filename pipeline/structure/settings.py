@@ -12,11 +12,10 @@ class StructureSettings(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    voxels_per_diameter: float = Field(
-        default=6.0,
-        ge=2.0,
-        le=64.0,
-        allow_inf_nan=False,
+    voxels_per_diameter: int = Field(
+        default=6,
+        ge=2,
+        le=64,
         description="Voxels to a mean fiber diameter: pores are known to a voxel, the tortuosity at a solidity of "
         "10 % to .5 % at 6 and .1 % at 12.",
     )

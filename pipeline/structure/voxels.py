@@ -2,6 +2,7 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,7 +61,7 @@ def room_in(surface: Surface, per_diameter: float) -> Room:
     if total > MOST:
         raise StageError(
             f"the pores would take {total:.3g} voxels, and {MOST:.0e} are the most: set structure.voxels_per_diameter "
-            f"to {per_diameter * (MOST / total) ** (1 / 3):.2g}, or take a smaller plan"
+            f"to {math.floor(per_diameter * (MOST / total) ** (1 / 3))}, or take a smaller plan"
         )
     first = np.array(surface.slab.lower) + 0.5 * (size - counts * voxel) + 0.5 * voxel
     axes = [first[axis] + voxel * np.arange(counts[axis]) for axis in range(3)]
