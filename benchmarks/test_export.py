@@ -13,10 +13,10 @@ import pytest
 
 from pipeline.export.settings import ExportSettings
 from pipeline.export.write import export
-from pipeline.nouns.mesh import FaceMesh, TetMesh
+from pipeline.nouns.mesh import FaceMesh
 from pipeline.quality.judge import cell_fields, judge
 from tests.openfoam import AIR
-from tests.sample_meshes import duct
+from tests.sample_meshes import TetMesh, duct
 
 FORMATS = {
     "openfoam binary": {"formats": ["openfoam"]},

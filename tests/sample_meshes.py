@@ -2,20 +2,44 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from pipeline.geometry.adjacency import corners_of, neighbors
 from pipeline.geometry.box import Box
-from pipeline.geometry.cells import cell_faces, polygons_of
+from pipeline.geometry.cells import cell_faces, polygons_of, rows_of
+from pipeline.geometry.faces import compacted, tet_faces
 from pipeline.geometry.tets import FACES, volumes
 from pipeline.geometry.triangles import Ints
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.fibers import Pieces
-from pipeline.nouns.mesh import FaceMesh, Patch, TetMesh
+from pipeline.nouns.mesh import FaceMesh, Patch
 from pipeline.nouns.patches import FIBERS, PATCHES
 from validation.closed_flows import brick_tets
 
 NO_PIECES = Pieces(np.empty((0, 3)), np.empty((0, 3)), np.empty(0, np.int64), np.empty((0, 2), bool))
 """Of a shape that no fiber made."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class TetMesh:
+    """Tetrahedra whose boundary triangles name their patch."""
+
+    points: Floats
+    tets: Ints
+    faces: Ints
+    patch: Ints
+    patches: tuple[str, ...]
+    slab: Box
+
+    def face_mesh(self) -> FaceMesh:
+        """Give the mesh as faces between cells; points that no tetrahedron uses are dropped."""
+        points, tets = compacted(self.points, self.tets)
+        across = neighbors(self.tets)
+        cell, side = np.nonzero(across < 0)
+        across[cell, side] = -1 - self.patch[rows_of(corners_of(self.tets, cell, side), self.faces)]
+        return FaceMesh.of_triangles(points, tet_faces(tets, across), self.patches)
 
 
 def boundary_of(tets: Ints) -> Ints:

@@ -2,7 +2,6 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-import os
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from pipeline.capture.intervals import share_interval
 from pipeline.capture.langevin import Motion
 from pipeline.capture.starts import starts
 from pipeline.capture.trajectories import CAPTURED, TIMED_OUT, Duct, Fates, Pace, tracked
+from pipeline.geometry.threads import cores
 from pipeline.line.places import remove
 from pipeline.line.store import DAMAGE, read_arrays
 
@@ -98,11 +98,6 @@ def counted(
             # the width falls as the root of the count; a little more, so that the next round is the last
             needed = int(1.05 * trials * (width / half_width) ** 2)
             wanted = min(max(needed, trials + BATCH), 8 * trials, _LARGEST_COUNT)
-
-
-def cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _batch(

@@ -69,7 +69,7 @@ def polygons_of(kind: str, cells: Ints) -> Ints:
     return faces.reshape(-1, table.shape[1])
 
 
-def cell_faces(polygons: Ints, cell: Ints, pairs: tuple[Ints, Ints] | None = None) -> CellFaces:
+def cell_faces(polygons: Ints, cell: Ints) -> CellFaces:
     """Put the polygons of all cells into a solver's order, those of two cells once.
 
     Parameters
@@ -78,8 +78,6 @@ def cell_faces(polygons: Ints, cell: Ints, pairs: tuple[Ints, Ints] | None = Non
         Faces of all cells, filled up with -1.
     cell : (k,) int array
         The cell that each belongs to.
-    pairs : optional
-        Of `matched_pairs`, where they are known.
 
     Returns
     -------
@@ -90,7 +88,7 @@ def cell_faces(polygons: Ints, cell: Ints, pairs: tuple[Ints, Ints] | None = Non
     ValueError
         If more than two cells share a face, or one cell has a face twice.
     """
-    first, second = pairs or matched_pairs(polygons)
+    first, second = matched_pairs(polygons)
     swap = cell[first] > cell[second]
     ours, theirs = np.where(swap, second, first), np.where(swap, first, second)
     twice = int((cell[ours] == cell[theirs]).sum())

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.geometry.cells import cell_faces, rows_of
-from pipeline.geometry.tets import FACES
+from pipeline.geometry.tets import Cells, Numbers
 from pipeline.geometry.triangles import Floats, Ints
 
 
@@ -19,28 +18,34 @@ class TetFaces:
     ----------
     triangles : (faces, 3) int array
         Counterclockwise seen from outside the owner; internal faces first, sorted by (owner, neighbour), then
-        the boundary faces in the order of their owners.
+        the boundary faces, patch after patch in the order of their owners.
     owner : (faces,) int array
         New number of the cell of lower number.
     neighbour : (internal,) int array
         New number of the other cell of the internal faces.
     order : (cells,) int array
         New cell k is the old tetrahedron ``order[k]``.
+    patch : (patches,) int array
+        Number of faces on each patch.
     """
 
     triangles: Ints
     owner: Ints
     neighbour: Ints
     order: Ints
+    patch: Ints
 
 
-def tet_faces(tets: Ints) -> TetFaces:
-    """Match the tetrahedra's faces, and renumber the cells so that neighbours stand close to each other.
+def tet_faces(tets: Numbers, across: Cells | None = None) -> TetFaces:
+    """List the tetrahedra's faces, and renumber the cells so that neighbours stand close to each other.
 
     Parameters
     ----------
     tets : (m, 4) int array
         Positive tetrahedra.
+    across : (m, 4) int array, optional
+        Neighbor across each face as in `pipeline.geometry.adjacency.neighbors`, -1 - k on the patch number k; matched
+        here unless given.
 
     Returns
     -------
@@ -63,56 +68,19 @@ def tet_faces(tets: Ints) -> TetFaces:
     >>> len(found.triangles), len(found.neighbour)
     (7, 1)
     """
-    triangles = tets[:, FACES].reshape(-1, 3)
-    cell = np.repeat(np.arange(len(tets)), 4)
     # numba takes half a second to load
-    from pipeline.geometry.adjacency import neighbors, pairs_of
+    from pipeline.geometry.adjacency import neighbors
+    from pipeline.geometry.face_order import in_solver_order, narrow_band
 
-    first, second = pairs_of(neighbors(tets))
-    order = _narrow_band(cell[first], cell[second], len(tets))
-    new = np.empty(len(tets), np.int64)
-    new[order] = np.arange(len(tets))
-    found = cell_faces(triangles, new[cell], (first, second))
-    return TetFaces(found.polygons, found.owner, found.neighbour, order)
-
-
-def _narrow_band(first: Ints, second: Ints, cells: int) -> Ints:
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import reverse_cuthill_mckee
-
-    # int32 indices, since the ordering is compiled for those
-    links = np.concatenate([first, second]).astype(np.int32), np.concatenate([second, first]).astype(np.int32)
-    graph = coo_array((np.ones(2 * len(first), np.int8), links), shape=(cells, cells)).tocsr()
-    return np.asarray(reverse_cuthill_mckee(graph, symmetric_mode=True), np.int64)
-
-
-def patch_of_faces(triangles: Ints, named: Ints, patch: Ints) -> Ints:
-    """Look up the patch of boundary triangles among named ones, whatever corner either starts with.
-
-    Parameters
-    ----------
-    triangles : (b, 3) int array
-    named : (b, 3) int array
-        The same triangles in another order.
-    patch : (b,) int array
-        Patch of each row of `named`.
-
-    Returns
-    -------
-    (b,) int array
-        Patch of each row of `triangles`.
-
-    Raises
-    ------
-    ValueError
-        If the two lists do not hold the same triangles.
-    """
-    row = rows_of(triangles, named)
-    if len(triangles) != len(named) or (row < 0).any():
-        raise ValueError(
-            f"the {len(named)} faces that name a patch are not the {len(triangles)} faces of one tetrahedron only"
-        )
-    return patch[row]
+    cells = np.ascontiguousarray(tets, np.int32)
+    beyond = neighbors(cells) if across is None else np.ascontiguousarray(across, np.int32)
+    order = narrow_band(beyond)
+    patches = max(0, -int(beyond.min(initial=0)))
+    found = in_solver_order(cells, beyond, order, patches)
+    for array in found:
+        array.flags.writeable = False  # what is read-only is not copied where it is kept
+    triangles, owner, neighbour, patch = found
+    return TetFaces(triangles, owner, neighbour, order, patch)
 
 
 def compacted(points: Floats, corners: Ints) -> tuple[Floats, Ints]:

@@ -2,15 +2,23 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+from typing import Any
+
 import numpy as np
+import numpy.typing as npt
 
 from pipeline.geometry.triangles import Floats, Ints
+
+Cells = npt.NDArray[np.int32]
+"""Numbers of vertices or cells: two billions of either suffice, in half the memory."""
+Numbers = npt.NDArray[np.signedinteger[Any]]
+"""Whole numbers of either size."""
 
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
 """Local vertices of the four faces of a positive tetrahedron, each counterclockwise seen from outside."""
 
 
-def volumes(points: Floats, tets: Ints) -> Floats:
+def volumes(points: Floats, tets: Numbers) -> Floats:
     """Signed volume of each tetrahedron.
 
     Parameters
@@ -34,7 +42,7 @@ def volumes(points: Floats, tets: Ints) -> Floats:
     return volume
 
 
-def boundary(tets: Ints) -> tuple[Ints, Ints]:
+def boundary(tets: Numbers) -> tuple[Ints, Ints]:
     """Find the triangles that belong to one tetrahedron only.
 
     Parameters
@@ -55,7 +63,7 @@ def boundary(tets: Ints) -> tuple[Ints, Ints]:
     >>> len(faces), np.bincount(cell).tolist()
     (6, [3, 3])
     """
-    faces = tets[:, FACES].reshape(-1, 3)
+    faces = tets.astype(np.int64)[:, FACES].reshape(-1, 3)
     ordered = np.sort(faces, axis=1)
     count = int(tets.max(initial=0)) + 1
     # two steps keep the product of three indices within 64 bits

@@ -6,91 +6,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pipeline.geometry.box import Box
-from pipeline.geometry.faces import compacted, patch_of_faces, tet_faces, tets_of_faces
+from pipeline.geometry.faces import TetFaces, tets_of_faces
 from pipeline.geometry.polyhedra import Polyhedra, fanned, polyhedra
-from pipeline.geometry.tets import volumes
 from pipeline.geometry.triangles import enclosed_volume
 from pipeline.nouns.arrays import Floats, Ints, all_within, freeze, require
 from pipeline.nouns.patches import FIBERS
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class TetMesh:
-    """The air in tetrahedra.
-
-    Parameters
-    ----------
-    points : (n, 3) array [m]
-    tets : (m, 4) int array
-        Vertices 0, 1, 2 counterclockwise seen from vertex 3's far side: every volume is above 0.
-    faces : (b, 3) int array
-        Boundary triangles, counterclockwise seen from outside the air.
-    patch : (b,) int array
-        Index into `patches` of each boundary triangle.
-    patches : tuple of str
-        Names; none is empty.
-    slab : Box [m]
-        The mat's slab within the duct.
-    """
-
-    points: Floats
-    tets: Ints
-    faces: Ints
-    patch: Ints
-    patches: tuple[str, ...]
-    slab: Box
-
-    def __post_init__(self) -> None:
-        freeze(
-            self,
-            points=np.asarray(self.points, np.float64),
-            tets=np.asarray(self.tets, np.int64),
-            faces=np.asarray(self.faces, np.int64),
-            patch=np.asarray(self.patch, np.int64),
-        )
-        flat = np.flatnonzero(volumes(self.points, self.tets) <= 0)
-        require(
-            len(flat) == 0,
-            f"{len(flat)} of {len(self.tets)} tetrahedra have no positive volume, first {flat[:1].tolist()}",
-        )
-        require(self.patch.shape == (len(self.faces),), "not every boundary face names its patch")
-        present = set(np.unique(self.patch).tolist())
-        require(present <= set(range(len(self.patches))), "a boundary face names a patch that does not exist")
-        missing = [name for k, name in enumerate(self.patches) if k not in present]
-        require(not missing, f"no boundary face in patch {', '.join(missing)}")
-
-    @property
-    def volume(self) -> float:
-        """Volume of all tetrahedra [m3]."""
-        return float(volumes(self.points, self.tets).sum())
-
-    def face_mesh(self) -> "FaceMesh":
-        """Give the mesh as faces between cells, in the order that a solver wants.
-
-        Cells are renumbered by reverse Cuthill-McKee, boundary faces stand patch after patch in the order of
-        `patches`, and points that no tetrahedron uses are dropped.
-        """
-        found = tet_faces(self.tets)
-        internal = len(found.neighbour)
-        patch = patch_of_faces(found.triangles[internal:], self.faces, self.patch)
-        order = np.concatenate([np.arange(internal), internal + np.argsort(patch, kind="stable")])
-        counts = np.bincount(patch, minlength=len(self.patches))
-        starts = internal + np.cumsum(counts) - counts
-        points, corners = compacted(self.points, found.triangles[order].ravel())
-        return FaceMesh(
-            points=points,
-            corners=corners,
-            offsets=np.arange(0, len(corners) + 1, 3),
-            owner=found.owner[order],
-            neighbour=found.neighbour,
-            cells=len(self.tets),
-            patches=tuple(
-                Patch(name, int(start), int(count))
-                for name, start, count in zip(self.patches, starts, counts, strict=True)
-            ),
-        )
-
 
 FLAT = ("empty", "wedge")
 
@@ -173,6 +93,36 @@ class FaceMesh:
         require(end == len(self.owner), "the patches do not cover the boundary")
         walls = sum(patch.count for patch in self.patches if patch.name == FIBERS)
         require(len(self.fiber) in (0, walls), f"{len(self.fiber)} of {walls} faces of {FIBERS} name their fiber")
+
+    @classmethod
+    def of_triangles(cls, points: Floats, found: TetFaces, names: tuple[str, ...]) -> "FaceMesh":
+        """Put tetrahedra together.
+
+        Parameters
+        ----------
+        points : (n, 3) array [m]
+            Each belongs to a face.
+        found : TetFaces
+            Their faces.
+        names : tuple of str
+            Of the patches; none is empty.
+        """
+        require(len(found.patch) <= len(names), "a boundary face names a patch that does not exist")
+        counts = np.concatenate([found.patch, np.zeros(len(names) - len(found.patch), np.int64)])
+        missing = [name for name, count in zip(names, counts, strict=True) if not count]
+        require(not missing, f"no boundary face in patch {', '.join(missing)}")
+        starts = len(found.neighbour) + np.cumsum(counts) - counts
+        return cls(
+            points=points,
+            corners=found.triangles.ravel(),
+            offsets=np.arange(0, found.triangles.size + 1, 3),
+            owner=found.owner,
+            neighbour=found.neighbour,
+            cells=len(found.order),
+            patches=tuple(
+                Patch(name, int(start), int(count)) for name, start, count in zip(names, starts, counts, strict=True)
+            ),
+        )
 
     @property
     def faces(self) -> int:

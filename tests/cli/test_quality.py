@@ -16,12 +16,12 @@ from pipeline.export.settings import ExportSettings
 from pipeline.export.write import export
 from pipeline.geometry.box import Box
 from pipeline.nouns.arrays import Floats, Ints
-from pipeline.nouns.mesh import FaceMesh, TetMesh
+from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.patches import PATCHES
 from tests.cli.conftest import Fibertwin
 from tests.openfoam import AIR, foam
 from tests.quality.test_checkmesh import BLOCK, SNAPPY
-from tests.sample_meshes import boundary_of, duct
+from tests.sample_meshes import TetMesh, boundary_of, duct
 
 SIZE = (10e-6, 10e-6, 20e-6)
 

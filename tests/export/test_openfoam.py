@@ -11,11 +11,11 @@ from pipeline.errors import StageError
 from pipeline.export.formats.openfoam.case import write_openfoam
 from pipeline.export.settings import ExportSettings, Format
 from pipeline.export.write import export
-from pipeline.nouns.mesh import FaceMesh, Patch, TetMesh
+from pipeline.nouns.mesh import FaceMesh, Patch
 from pipeline.openfoam.foam_file import Encoding
 from pipeline.openfoam.read import read_openfoam
 from tests.openfoam import AIR, figures, foam, patches
-from tests.sample_meshes import duct
+from tests.sample_meshes import TetMesh, duct
 
 
 @pytest.fixture(scope="module")

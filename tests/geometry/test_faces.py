@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pipeline.geometry.faces import compacted, patch_of_faces, tet_faces
+from pipeline.geometry.faces import compacted, tet_faces
 from tests.sample_meshes import duct
 
 
@@ -76,11 +76,6 @@ def test_the_renumbered_cells_are_the_tetrahedra() -> None:
 def test_three_tetrahedra_on_one_face_are_refused() -> None:
     with pytest.raises(ValueError, match="1 faces belong to more than two cells"):
         tet_faces(np.array([[0, 1, 2, 3], [0, 1, 2, 4], [0, 1, 2, 5]]))
-
-
-def test_a_boundary_that_is_not_the_mesh_s_is_refused() -> None:
-    with pytest.raises(ValueError, match="not the 1 faces"):
-        patch_of_faces(np.array([[0, 1, 2]]), np.array([[0, 1, 3]]), np.array([0]))
 
 
 def test_unused_points_are_dropped() -> None:

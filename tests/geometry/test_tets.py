@@ -68,7 +68,7 @@ def test_neighbors_are_mutual_and_share_three_vertices() -> None:
 
 def test_every_tetrahedron_is_listed_at_each_of_its_vertices() -> None:
     points, tets = kuhn_box(2)
-    first, cells = cells_at_vertices(tets, len(points))
+    first, cells = cells_at_vertices(tets.astype(np.int32), len(points))
     for vertex in range(len(points)):
         listed = cells[first[vertex] : first[vertex + 1]]
         assert sorted(listed) == sorted(np.flatnonzero((tets == vertex).any(axis=1)))

@@ -188,7 +188,7 @@ def across(edge: float) -> tuple[FluidDomain, TetmeshSettings]:
 def wall_distances(edge: float) -> Floats:
     """Distance of each of the lattice's vertices on the fiber from the fiber's axis, in radii."""
     domain, settings = across(edge)
-    raw = lattice_mesh(domain, settings, silent)
+    raw, _ = lattice_mesh(domain, settings, silent)
     faces, _ = boundary(raw.tets)
     on_plane = np.zeros(len(faces), dtype=bool)
     for axis in range(3):

@@ -9,13 +9,11 @@ from pipeline.geometry.box import Box
 from pipeline.geometry.tets import boundary
 from pipeline.mesh.boundary import assign
 from pipeline.mesh.engines.ftetwild.ftetwild import _plane_errors, lost_part
-from pipeline.mesh.improve.settle import at_fibers
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
-from pipeline.nouns.mesh import TetMesh
 from pipeline.nouns.patches import FIBERS, PATCHES
 from tests.mesh.boxes import kuhn_box
-from tests.sample_meshes import NO_PIECES
+from tests.sample_meshes import NO_PIECES, TetMesh
 
 UNIT = Box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
 
@@ -72,14 +70,3 @@ def test_sharp_air_that_is_filled_beside_a_fiber_is_no_dent() -> None:
     filled = reaching[np.arange(len(reaching)) != np.flatnonzero(beside)[0]]
     assert _plane_errors(points, filled, whole)["inlet"] == pytest.approx(-1 / 48)
     assert lost_part(points, filled, whole) is None
-
-
-def test_only_cells_with_a_vertex_on_a_fiber_may_be_given_to_it() -> None:
-    points, tets = hollow_box()
-    mesh = mesh_of(points, tets)
-    near = at_fibers(tets, mesh.faces[mesh.patch == PATCHES.index(FIBERS)], len(points))
-    # the fiber is the cube from 0.4 to 0.6
-    on_cube = np.asarray(((points > 0.39) & (points < 0.61)).all(axis=1))
-    np.testing.assert_array_equal(near, on_cube[tets].any(axis=1))
-    assert near.any()
-    assert not near.all()

@@ -7,10 +7,10 @@ import pytest
 
 from pipeline.geometry.box import Box
 from pipeline.geometry.cells import cell_faces, polygons_of
-from pipeline.nouns.mesh import FaceMesh, Patch, TetMesh
+from pipeline.nouns.mesh import FaceMesh, Patch
 from pipeline.quality.judge import cell_fields, judge, measure
 from pipeline.quality.settings import QualitySettings
-from tests.sample_meshes import boundary_of, duct
+from tests.sample_meshes import TetMesh, boundary_of, duct
 
 
 def bricks(sizes: list[float], shear: float = 0.0) -> FaceMesh:

@@ -9,9 +9,8 @@ from pipeline.geometry.tets import volumes
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.fibers import Pieces
-from pipeline.nouns.mesh import TetMesh
 from pipeline.nouns.patches import FIBERS, PATCHES
-from tests.sample_meshes import boundary_of
+from tests.sample_meshes import TetMesh, boundary_of
 
 
 def rows(

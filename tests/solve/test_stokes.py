@@ -13,13 +13,13 @@ from pipeline.mesh.wall_fibers import wall_fibers
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.flow import Flow, Solution
 from pipeline.nouns.flow_field import FlowField
-from pipeline.nouns.mesh import FaceMesh, TetMesh
+from pipeline.nouns.mesh import FaceMesh
 from pipeline.progress import silent
 from pipeline.solve.bed import Bed
 from pipeline.solve.settings import StokesSettings
 from pipeline.solve.stokes.solver import solve_stokes
 from tests.openfoam import AIR
-from tests.sample_meshes import boundary_of, cylinder
+from tests.sample_meshes import TetMesh, boundary_of, cylinder
 from tests.solve.rows import rows
 from validation.exact import square_drag
 

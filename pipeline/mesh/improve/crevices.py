@@ -1,4 +1,4 @@
-"""Fill the crevices that no mesh resolves, and drop the pockets that no flow reaches.
+"""Find the crevices that no mesh resolves.
 
 Where a fiber grazes a side of the duct, or two fibers touch, the air ends in a wedge without thickness. The cells in
 its tip have all their vertices on the boundary, so that none can be moved, and no shape of theirs suits a solver.
@@ -8,40 +8,37 @@ The air in them stands still: they are given to the fibers, a few millionths of 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import numpy as np
-import numpy.typing as npt
 
-from pipeline.nouns.arrays import Ints
+from pipeline.mesh.working_mesh import WorkingMesh, on_boundary
+from pipeline.nouns.arrays import Bools
 
 
-def in_crevice(
-    tets: Ints, walls: Ints, at_wall: Ints, vertices: int, faulty: npt.NDArray[np.bool_], stuck: bool
-) -> npt.NDArray[np.bool_]:
+def in_crevice(mesh: WorkingMesh, faulty: Bools, stuck: bool) -> Bools:
     """Find the faulty cells that lie in the tip of a wedge.
 
     Parameters
     ----------
-    tets : (m, 4) int array
-    walls : (b, 3) int array
-        Faces on the boundary.
-    at_wall : (b,) int array
-        Cell of each.
-    vertices : int
-        Number of vertices.
+    mesh : WorkingMesh
     faulty : (m,) bool array
         Cells that a solver would find fault with.
     stuck : bool
-        Whether mending has given up: then every faulty cell with a face on the boundary is in a tip; before, only
+        Whether smoothing has given up: then every faulty cell with a face on the boundary is in a tip; before, only
         those whose every vertex lies on the boundary too.
 
     Returns
     -------
     (m,) bool array
     """
-    touching = np.zeros(len(tets), dtype=bool)
-    touching[at_wall] = True
-    tip: npt.NDArray[np.bool_] = faulty & touching
+    tip: Bools = faulty & on_boundary(mesh.across).any(axis=1)
     if not stuck:
-        on_boundary = np.zeros(vertices, dtype=bool)
-        on_boundary[walls] = True
-        tip &= on_boundary[tets].all(axis=1)
+        outside = np.zeros(len(mesh.points), dtype=bool)
+        outside[mesh.boundary()[0]] = True
+        tip &= outside[mesh.tets].all(axis=1)
     return tip
+
+
+def at_walls(mesh: WorkingMesh) -> Bools:
+    """Find the cells that touch a fiber, if only with a vertex, (m,) bool array."""
+    on_fibers = np.zeros(len(mesh.points), dtype=bool)
+    on_fibers[mesh.walls()] = True
+    return np.asarray(on_fibers[mesh.tets].any(axis=1))

@@ -1,38 +1,35 @@
-"""Make a mesh fit for a solver: mend its worst cells, fill its crevices, give the fibers their volume, check."""
+"""Make a mesh fit for a solver: repair its worst cells, give the fibers their radius back, check."""
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import numpy as np
 
-from pipeline.geometry.faces import compacted
-from pipeline.geometry.tets import volumes
-from pipeline.mesh.boundary import assign, free_axes
-from pipeline.mesh.distance import fiber_distance
 from pipeline.mesh.engines.flawed import FlawedMeshError
-from pipeline.mesh.engines.raw import RawMesh
-from pipeline.mesh.improve.fit import fitted
-from pipeline.mesh.improve.settle import Reaches, settled
+from pipeline.mesh.improve.repair import repaired
+from pipeline.mesh.improve.walls import on_fibers
 from pipeline.mesh.settings import TetmeshSettings
-from pipeline.nouns.arrays import Floats, Ints
+from pipeline.mesh.working_mesh import WorkingMesh
+from pipeline.nouns.arrays import Floats
 from pipeline.nouns.domain import FluidDomain
-from pipeline.nouns.mesh import FaceMesh, TetMesh
-from pipeline.nouns.mesh_measures import TetmeshMeasures
+from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.mesh_measures import MeshingCost, TetmeshMeasures
 from pipeline.nouns.patches import FIBERS
 from pipeline.progress import Progress
 
-_FITS = 2  # the second makes good what mending after the first moved
-_SLIDE = 0.2  # edges that it may move a vertex along its fiber
-_REACH = 3.0  # radii from a fiber beyond which it does not matter
+_ROUNDS = 2  # the second makes good what repairing after the first moved
 
 
 def finished(
-    raw: RawMesh, domain: FluidDomain, settings: TetmeshSettings, progress: Progress
+    mesh: WorkingMesh, cost: MeshingCost, domain: FluidDomain, settings: TetmeshSettings, progress: Progress
 ) -> tuple[FaceMesh, TetmeshMeasures]:
-    """Mend what an engine left, give each fiber its radius back, and check.
+    """Improve what an engine left, and check.
 
     Parameters
     ----------
-    raw : RawMesh
+    mesh : WorkingMesh
+        As the engine leaves it.
+    cost : MeshingCost
+        What the engine used.
     domain : FluidDomain
     settings : TetmeshSettings
     progress : Progress
@@ -47,44 +44,40 @@ def finished(
         If cells without volume remain.
     """
     # numba takes half a second to load, which no refused case file should cost
-    from pipeline.geometry.adjacency import boundary_of, neighbors
+    from pipeline.geometry.adjacency import cell_volumes
+    from pipeline.geometry.faces import tet_faces
 
-    points, tets = compacted(raw.points, raw.tets)
-    raw_error = domain.volume_error(float(volumes(points, tets).sum()))
-    progress("mending the worst cells", 0.6)
-    limits = np.array(domain.box.lower), np.array(domain.box.upper)
-    distance = fiber_distance(domain, _REACH * domain.radius)
-    reaches = Reaches(distance, 2.0 * domain.radius, raw.leash, _SLIDE * settings.edge)
-    filled = 0.0
-    for _ in range(_FITS):
-        points, tets, faulty, tips = settled(points, tets, domain, reaches)
-        filled += tips
-        points, tets = compacted(points, tets)
-        faces, _ = boundary_of(tets, neighbors(tets))
-        walls = faces[assign(points, faces, domain.box, tolerance=0.0) == domain.patches.index(FIBERS)]
-        points = fitted(points, tets, walls, free_axes(points, domain.box, domain.cyclic), distance, limits)
-    _check_volumes(points, tets, settings)
-
-    faces, _ = boundary_of(tets, neighbors(tets))
-    patch = assign(points, faces, domain.box, tolerance=0.0)
-    _check_patches(patch, domain, settings)
-    mesh = TetMesh(points, tets, faces, patch, domain.patches, domain.slab)
+    raw_error = domain.volume_error(float(cell_volumes(mesh.points, mesh.tets).sum()))
+    filled, faulty = 0.0, 0
+    for turn in range(_ROUNDS):
+        progress("repairing the worst cells", 0.6 + 0.15 * turn)
+        mesh, faulty, air = repaired(mesh)
+        filled += air
+        progress("moving the walls onto the fibers", 0.7 + 0.15 * turn)
+        mesh = on_fibers(mesh)
+    mesh = mesh.compacted()
+    volume = cell_volumes(mesh.points, mesh.tets)
+    _check_volumes(mesh, volume, settings)
+    _check_patches(mesh, domain, settings)
+    progress("numbering cells and faces", 0.9)
+    faces = FaceMesh.of_triangles(mesh.points, tet_faces(mesh.tets, mesh.across), domain.patches)
     measures = TetmeshMeasures(
-        points=len(points),
-        cells=len(tets),
-        fluid_volume=mesh.volume,
-        volume_error=domain.volume_error(float(volumes(points, tets).sum())),
+        points=len(faces.points),
+        cells=faces.cells,
+        fluid_volume=float(volume.sum()),
+        volume_error=domain.volume_error(float(volume.sum())),
         raw_volume_error=raw_error,
         filled_volume=filled / domain.volume,
         faulty_cells=faulty,
-        mesher_seconds=raw.seconds,
-        mesher_peak_memory=raw.peak_memory,
+        mesher_seconds=cost.seconds,
+        mesher_peak_memory=cost.peak_memory,
     )
-    return mesh.face_mesh(), measures
+    return faces, measures
 
 
-def _check_patches(patch: Ints, domain: FluidDomain, settings: TetmeshSettings) -> None:
-    empty = [name for number, name in enumerate(domain.patches) if not (patch == number).any()]
+def _check_patches(mesh: WorkingMesh, domain: FluidDomain, settings: TetmeshSettings) -> None:
+    found = set(np.unique(-1 - mesh.across[mesh.across < 0]).tolist())
+    empty = [name for number, name in enumerate(domain.patches) if number not in found]
     if FIBERS in empty:
         thickest = 2.0 * float(domain.radius.max())
         raise FlawedMeshError(
@@ -98,11 +91,11 @@ def _check_patches(patch: Ints, domain: FluidDomain, settings: TetmeshSettings) 
         )
 
 
-def _check_volumes(points: Floats, tets: Ints, settings: TetmeshSettings) -> None:
-    flat = np.flatnonzero(volumes(points, tets) <= 0.0)
+def _check_volumes(mesh: WorkingMesh, volume: Floats, settings: TetmeshSettings) -> None:
+    flat = np.flatnonzero(volume <= 0.0)
     if len(flat):
-        place = points[tets[flat[0]]].mean(axis=0) * 1e6
+        place = mesh.points[mesh.tets[flat[0]]].mean(axis=0) * 1e6
         raise FlawedMeshError(
-            f"{len(flat)} of {len(tets)} tetrahedra have no volume, first at ({place[0]:.3g}, {place[1]:.3g}, "
+            f"{len(flat)} of {mesh.cells} tetrahedra have no volume, first at ({place[0]:.3g}, {place[1]:.3g}, "
             f"{place[2]:.3g}) um; {settings.mesher.truer}"
         )

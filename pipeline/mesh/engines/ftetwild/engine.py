@@ -51,7 +51,7 @@ def _mesh(
     from pipeline.mesh.improve.finish import finished
 
     unit = domain.mean_diameter
-    return finished(tetrahedralized(domain, settings, unit, progress), domain, settings, progress)
+    return finished(*tetrahedralized(domain, settings, unit, progress), domain, settings, progress)
 
 
 def _estimate(slender: float, settings: "TetmeshSettings") -> Estimate:

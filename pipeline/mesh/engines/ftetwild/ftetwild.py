@@ -16,19 +16,23 @@ from pipeline.mesh.engines.ftetwild.child import Meshed, run_child
 from pipeline.mesh.engines.ftetwild.engine import TetwildSettings
 from pipeline.mesh.engines.ftetwild.size_field import size_field
 from pipeline.mesh.engines.limits import memory_allowed
-from pipeline.mesh.engines.raw import RawMesh
+from pipeline.mesh.freedom import Freedom
 from pipeline.mesh.settings import TetmeshSettings
+from pipeline.mesh.working_mesh import WorkingMesh
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
+from pipeline.nouns.mesh_measures import MeshingCost
 from pipeline.nouns.patches import FIBERS
 from pipeline.progress import Progress
 
-_WALL_LEASH = 0.5  # envelopes that mending may move a vertex of a fiber
+_OFF = 0.5  # envelopes that improving may move a vertex off a fiber
 _BESIDE = 1.0  # diameters: points of a fiber's surface are 0.6 apart, and too thin air beside it ends within that
 _PLANE_ERROR = 0.01  # of a plane's area; rounding of the fibers' cuts takes a few thousandths
 
 
-def tetrahedralized(domain: FluidDomain, settings: TetmeshSettings, unit: float, progress: Progress) -> RawMesh:
+def tetrahedralized(
+    domain: FluidDomain, settings: TetmeshSettings, unit: float, progress: Progress
+) -> tuple[WorkingMesh, MeshingCost]:
     """Fill the air with tetrahedra by fTetWild.
 
     The mesh differs a little from run to run: fTetWild draws from the system's own randomness.
@@ -43,7 +47,7 @@ def tetrahedralized(domain: FluidDomain, settings: TetmeshSettings, unit: float,
 
     Returns
     -------
-    RawMesh
+    WorkingMesh, MeshingCost
 
     Raises
     ------
@@ -69,7 +73,8 @@ def tetrahedralized(domain: FluidDomain, settings: TetmeshSettings, unit: float,
             f"(allowed: {_PLANE_ERROR:.0%}); raise tetmesh.tetwild.passes (now {own.passes}) "
             "or tetmesh.tetwild.envelope, or lower surface.sides"
         )
-    return RawMesh(points, tets, _WALL_LEASH * own.envelope, raw.seconds, raw.peak_memory)
+    freedom = Freedom.of(domain, _OFF * own.envelope, settings.edge)
+    return WorkingMesh.of(points, tets, freedom), MeshingCost(raw.seconds, raw.peak_memory)
 
 
 def lost_part(points: Floats, tets: Ints, domain: FluidDomain) -> tuple[str, float] | None:

@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from pipeline.geometry.compiled import compiled
 from pipeline.geometry.keys import KeyTable, add, empty_table, row_of
+from pipeline.geometry.tets import Cells
 from pipeline.geometry.triangles import Floats, Ints
 
 Sides = npt.NDArray[np.int8]
@@ -25,7 +26,7 @@ _TURNS = np.array(
 """Corners of a prism, turned so that each of them comes first."""
 
 
-def crossed_edges(tets: Ints, side: Sides) -> tuple[Ints, KeyTable]:
+def crossed_edges(tets: Cells, side: Sides) -> tuple[Ints, KeyTable]:
     """Edges from the air into a fiber.
 
     Parameters
@@ -45,7 +46,7 @@ def crossed_edges(tets: Ints, side: Sides) -> tuple[Ints, KeyTable]:
 
 
 @compiled
-def _crossed(tets: Ints, side: Sides) -> tuple[Ints, KeyTable]:
+def _crossed(tets: Cells, side: Sides) -> tuple[Ints, KeyTable]:
     both = 0
     for cell in range(len(tets)):
         lowest, highest = 1, -1
@@ -69,7 +70,7 @@ def _crossed(tets: Ints, side: Sides) -> tuple[Ints, KeyTable]:
 
 
 @compiled
-def in_air(points: Floats, tets: Ints, side: Sides, rank: Ints, edges: KeyTable, kept: npt.NDArray[np.bool_]) -> Ints:
+def in_air(points: Floats, tets: Cells, side: Sides, rank: Ints, edges: KeyTable, kept: npt.NDArray[np.bool_]) -> Cells:
     """Give the tetrahedra of the air: whole ones, and what the surface leaves of those it crosses.
 
     Parameters
@@ -92,7 +93,7 @@ def in_air(points: Floats, tets: Ints, side: Sides, rank: Ints, edges: KeyTable,
     """
     count = 0
     room = len(tets) + 1024
-    result = np.empty((room, 4), np.int64)
+    result = np.empty((room, 4), np.int32)
     corner, air, on, inner = np.empty(4, np.int64), 0, 0, 0
     prism = np.empty(6, np.int64)
     for cell in range(len(tets)):
@@ -144,7 +145,7 @@ def _crossing(outer: np.int64, inner: np.int64, side: Sides, edges: KeyTable) ->
 
 
 @compiled
-def _volume(points: Floats, tet: Ints) -> float:
+def _volume(points: Floats, tet: Cells) -> float:
     a = points[tet[0]]
     b, c, d = points[tet[1]] - a, points[tet[2]] - a, points[tet[3]] - a
     return float(
@@ -161,7 +162,7 @@ def _before(a: np.int64, b: np.int64, rank: Ints) -> bool:
 
 
 @compiled
-def _pyramid(apex: np.int64, a: np.int64, b: np.int64, c: int, d: int, rank: Ints, result: Ints, count: int) -> int:
+def _pyramid(apex: np.int64, a: np.int64, b: np.int64, c: int, d: int, rank: Ints, result: Cells, count: int) -> int:
     """Two tetrahedra; the base a, b, c, d is cut through the corner of lowest rank, which is a or b."""
     if _before(b, a, rank):
         result[count, 0], result[count, 1], result[count, 2], result[count, 3] = apex, b, c, d
@@ -173,7 +174,7 @@ def _pyramid(apex: np.int64, a: np.int64, b: np.int64, c: int, d: int, rank: Int
 
 
 @compiled
-def _prism(prism: Ints, rank: Ints, result: Ints, count: int) -> int:
+def _prism(prism: Ints, rank: Ints, result: Cells, count: int) -> int:
     """Three tetrahedra between two triangles, each quadrilateral cut through its corner of lowest rank."""
     lowest = 0
     for k in range(1, 6):

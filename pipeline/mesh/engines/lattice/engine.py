@@ -27,7 +27,7 @@ def _mesh(
     from pipeline.mesh.engines.lattice.lattice import lattice_mesh
     from pipeline.mesh.improve.finish import finished
 
-    return finished(lattice_mesh(domain, settings, progress), domain, settings, progress)
+    return finished(*lattice_mesh(domain, settings, progress), domain, settings, progress)
 
 
 def _estimate(slender: float, settings: "TetmeshSettings") -> Estimate:

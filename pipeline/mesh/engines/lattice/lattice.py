@@ -10,14 +10,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from pipeline.geometry.tets import volumes
+from pipeline.geometry.tets import Cells
 from pipeline.machine import peak_memory
 from pipeline.mesh.distance import fiber_distance
 from pipeline.mesh.engines.limits import memory_allowed
-from pipeline.mesh.engines.raw import RawMesh
+from pipeline.mesh.freedom import Freedom
 from pipeline.mesh.settings import TetmeshSettings
+from pipeline.mesh.working_mesh import WorkingMesh
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
+from pipeline.nouns.mesh_measures import MeshingCost
 from pipeline.progress import Progress
 
 if TYPE_CHECKING:
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
     from pipeline.mesh.engines.lattice.octree import Octree
 
 _SNAP = 0.25  # cube edges between a vertex and the surface up to which the vertex moves onto it
-_LEASH = 0.02  # of its diameter that mending may move a vertex off a fiber
+_OFF = 0.02  # of its diameter that improving may move a vertex off a fiber
 _FARTHEST = 2.0  # distances from the surface that a vertex may move, when it has to stay on a plane of the duct
 _LEAST = 1e-3  # volume of a tetrahedron whose vertices have moved, in cubes; there are 12 to a cube
 _SHORTEST = 0.1  # diameters; a shorter fiber gets no smaller cubes
@@ -37,7 +39,7 @@ _FINER = 1  # levels of smaller cubes where air is narrow
 _NARROW = 0.75  # cubes between walls that face each other
 
 
-def lattice_mesh(domain: FluidDomain, settings: TetmeshSettings, progress: Progress) -> RawMesh:
+def lattice_mesh(domain: FluidDomain, settings: TetmeshSettings, progress: Progress) -> tuple[WorkingMesh, MeshingCost]:
     """Fill the air with tetrahedra, whose vertices at the fibers lie on the true cylinders.
 
     Cubes at a fiber have the edge `settings.edge` times its own diameter; away from it they double where
@@ -52,7 +54,7 @@ def lattice_mesh(domain: FluidDomain, settings: TetmeshSettings, progress: Progr
 
     Returns
     -------
-    RawMesh
+    WorkingMesh, MeshingCost
 
     Raises
     ------
@@ -90,7 +92,8 @@ def lattice_mesh(domain: FluidDomain, settings: TetmeshSettings, progress: Progr
         points, plane, np.asarray(vertices.width * edge.max(), np.float64), tets, lower, upper, number, domain.cyclic
     )
     points, cells = _cut(lattice, value, distance)
-    return RawMesh(points, cells, _LEASH, time.monotonic() - began, peak_memory())
+    mesh = WorkingMesh.of(points, cells, Freedom.of(domain, _OFF, settings.edge))
+    return mesh, MeshingCost(time.monotonic() - began, peak_memory())
 
 
 def wanted_edges(domain: FluidDomain, settings: TetmeshSettings) -> Floats:
@@ -143,7 +146,7 @@ class Lattice:
         Along each axis: -1 on the duct's lower plane, 1 on its upper plane, 0 between.
     width : (n,) array [m]
         Edge of the smallest cube at each vertex.
-    tets : (m, 4) int array
+    tets : (m, 4) int32 array
     lower, upper : (3,) arrays [m]
         Corners of the duct.
     number : (n,) int array
@@ -154,15 +157,16 @@ class Lattice:
     points: Floats
     plane: npt.NDArray[np.int8]
     width: Floats
-    tets: Ints
+    tets: Cells
     lower: Floats
     upper: Floats
     number: Ints
     cyclic: bool
 
 
-def _cut(lattice: Lattice, value: Floats, distance: "FiberDistance") -> tuple[Floats, Ints]:
+def _cut(lattice: Lattice, value: Floats, distance: "FiberDistance") -> "tuple[Floats, Cells]":
     """Move vertices near the surface onto it, cut what still crosses it, and keep what lies in the air."""
+    from pipeline.geometry.adjacency import cell_volumes
     from pipeline.mesh.engines.lattice.cut import crossed_edges, in_air
 
     points, plane, tets = lattice.points.copy(), lattice.plane, lattice.tets
@@ -177,7 +181,7 @@ def _cut(lattice: Lattice, value: Floats, distance: "FiberDistance") -> tuple[Fl
     least = _LEAST * lattice.width[touched].min(axis=1) ** 3
     while True:
         # on a plane of the duct a vertex may have to go far to meet the surface, and turn a tetrahedron inside out
-        flat = touched[volumes(places, touched) < least]
+        flat = touched[cell_volumes(places, touched) < least]
         back = np.unique(flat[on_surface[flat]])
         if not len(back):
             break
@@ -204,7 +208,7 @@ def _cut(lattice: Lattice, value: Floats, distance: "FiberDistance") -> tuple[Fl
     # but none of its edges may run through a fiber
     for a, b in itertools.combinations(range(4), 2):
         airy &= distance.at(points[tets[between][:, [a, b]]].mean(axis=1)) > -_THROUGH * width
-    thick = volumes(points, tets[between]) > _THICK * width**3
+    thick = cell_volumes(points, tets[between]) > _THICK * width**3
     kept = np.zeros(len(tets), dtype=bool)
     kept[between[airy & thick]] = True
     if lattice.cyclic:
@@ -221,7 +225,7 @@ def _cut(lattice: Lattice, value: Floats, distance: "FiberDistance") -> tuple[Fl
     return points, cells
 
 
-def _matching_parts(cells: Ints, number: Ints, plane: npt.NDArray[np.int8]) -> Ints:
+def _matching_parts(cells: Cells, number: Ints, plane: npt.NDArray[np.int8]) -> Cells:
     """Drop what hangs on the largest part by no face, and what lies opposite to it on a cyclic side.
 
     Parameters

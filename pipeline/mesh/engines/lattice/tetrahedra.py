@@ -17,6 +17,7 @@ import numpy as np
 
 from pipeline.geometry.compiled import compiled
 from pipeline.geometry.keys import KeyTable, add, empty_table, row_of
+from pipeline.geometry.tets import Cells
 from pipeline.geometry.triangles import Floats, Ints
 from pipeline.mesh.engines.lattice.octree import Octree
 
@@ -60,7 +61,7 @@ def lattice_vertices(tree: Octree) -> LatticeVertices:
     return LatticeVertices(*_vertices(tree.low, tree.level, tree.counts))
 
 
-def lattice_tetrahedra(tree: Octree, vertices: LatticeVertices, air: Floats) -> Ints:
+def lattice_tetrahedra(tree: Octree, vertices: LatticeVertices, air: Floats) -> Cells:
     """Fill the cubes with tetrahedra, but for those without air.
 
     Parameters
@@ -72,12 +73,12 @@ def lattice_tetrahedra(tree: Octree, vertices: LatticeVertices, air: Floats) -> 
 
     Returns
     -------
-    (m, 4) int array
+    (m, 4) int32 array
         Positive.
     """
     arguments = (tree.low, tree.level, tree.counts, vertices.places, vertices.center, vertices.table, air)
-    count = _fill(*arguments, np.empty((0, 4), np.int64))
-    tets = np.empty((count, 4), np.int64)
+    count = _fill(*arguments, np.empty((0, 4), np.int32))
+    tets = np.empty((count, 4), np.int32)
     _fill(*arguments, tets)
     return tets
 
@@ -132,7 +133,7 @@ def _vertices(low: Ints, level: Ints, counts: Ints) -> tuple[Ints, Ints, Ints, K
 
 
 @compiled
-def _emit(tets: Ints, count: int, places: Ints, air: Floats, a: int, b: int, c: int, d: int) -> int:
+def _emit(tets: Cells, count: int, places: Ints, air: Floats, a: int, b: int, c: int, d: int) -> int:
     if air[a] <= 0.0 and air[b] <= 0.0 and air[c] <= 0.0 and air[d] <= 0.0:
         return count
     if len(tets):
@@ -147,7 +148,7 @@ def _emit(tets: Ints, count: int, places: Ints, air: Floats, a: int, b: int, c: 
 
 @compiled
 def _fill(
-    low: Ints, level: Ints, counts: Ints, places: Ints, center: Ints, table: KeyTable, air: Floats, tets: Ints
+    low: Ints, level: Ints, counts: Ints, places: Ints, center: Ints, table: KeyTable, air: Floats, tets: Cells
 ) -> int:
     """Write the tetrahedra at the faces of all cubes into an array with room for them; give their number."""
     is_center = np.zeros(len(places), np.bool_)

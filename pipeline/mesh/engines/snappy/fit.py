@@ -1,7 +1,7 @@
 """Give the fibers exactly the volume of their surface, by moving their walls by one distance.
 
 Faces between points on a cylinder cut its corners, and cells that bridge a crease between two fibers fill it; both
-are tenths of a percent. The same is done for tetrahedra in `pipeline.mesh.improve.fit`.
+are tenths of a percent. The same is done for tetrahedra in `pipeline.mesh.improve.walls`.
 """
 
 # SPDX-License-Identifier: GPL-3.0-or-later

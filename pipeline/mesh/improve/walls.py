@@ -11,11 +11,10 @@ is no reason to thin a fiber elsewhere: walls there stay.
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
-from pipeline.geometry.tets import volumes
 from pipeline.geometry.triangles import area_vectors, vertex_sums
-from pipeline.nouns.arrays import Floats, Ints
+from pipeline.mesh.working_mesh import WorkingMesh
+from pipeline.nouns.arrays import Bools, Floats, Ints
 
 if TYPE_CHECKING:
     from pipeline.geometry.fibers import FiberDistance
@@ -26,77 +25,73 @@ _SMALLEST = 0.3  # share of its volume that every cell keeps, or its vertices st
 _ON = 0.25  # radii from a fiber within which a vertex lies on it
 
 
-def fitted(
-    points: Floats, all_tets: Ints, walls: Ints, free: Floats, distance: "FiberDistance", limits: tuple[Floats, Floats]
-) -> Floats:
+def on_fibers(mesh: WorkingMesh) -> WorkingMesh:
     """Move the walls' vertices so that each fiber's walls stand on it on average.
 
     Parameters
     ----------
-    points : (n, 3) array [m]
-    all_tets : (m, 4) int array
-        Positive tetrahedra.
-    walls : (b, 3) int array
-        Boundary triangles of the fibers, outward from the air.
-    free : (n, 3) array of 0 and 1
-        Along which axes a wall's vertex may move: not across the duct's planes.
-    distance : FiberDistance
-    limits : tuple of two (3,) arrays [m]
-        Lowest and highest coordinates of the box that no vertex may leave.
+    mesh : WorkingMesh
+        Of positive tetrahedra.
 
     Returns
     -------
-    (n, 3) array [m]
-        Vertices whose move would flatten a cell, or make a sound one faulty, stay in place.
+    WorkingMesh
+        Vertices whose move would flatten a cell, or make a sound one faulty, stay in place, as do those that would
+        leave the duct or one of its planes.
     """
     # numba takes half a second to load, which no refused case file should cost
-    from pipeline.geometry.adjacency import neighbors, ring
-    from pipeline.mesh.improve.mend import faults
+    from pipeline.geometry.adjacency import cell_volumes, touching
+    from pipeline.mesh.improve.smooth import faulty_cells
 
-    result = np.array(points)
-    on_wall = np.zeros(len(points), dtype=bool)
-    on_wall[walls] = True
-    # only cells with a vertex on a wall change, and only faces of these can become faulty
-    near = np.asarray(on_wall[all_tets].any(axis=1))
-    tets = all_tets[ring(all_tets, near, len(points))]
-    across = neighbors(tets)
-    start = volumes(points, tets)
-    sound = faults(points, tets, across) <= 1.0
-    own = _own_walls(points, walls, distance)
+    walls, distance, limits = mesh.walls(), mesh.freedom.distance, mesh.freedom.limits
+    own = _own_walls(mesh.points, walls, distance)
     # a vertex moves if all the walls around it are those of one fiber
-    mixed = np.zeros(len(points), dtype=bool)
-    mixed[walls[~own]] = True
-    movable = (on_wall & ~mixed).astype(np.float64)
+    movable = np.zeros(len(mesh.points), dtype=bool)
+    movable[walls] = True
+    movable[walls[~own]] = False
+    free = mesh.freedom.free_axes(mesh.planes)
+    # only cells with a vertex that moves change, and only faces of these can become faulty
+    near = _with_neighbors(mesh, touching(mesh.tets, movable))
+    start = cell_volumes(mesh.points, mesh.tets[near])
+    sound = ~faulty_cells(mesh, near)
+    row = np.full(mesh.cells, -1, np.int32)
+    row[near] = np.arange(len(near))
     for _ in range(_ROUNDS):
-        vectors = area_vectors(result, walls)
-        normals = vertex_sums(walls[own], vectors[own], len(points))
+        vectors = area_vectors(mesh.points, walls)
+        normals = vertex_sums(walls[own], vectors[own], len(mesh.points))
         length = np.linalg.norm(normals, axis=1, keepdims=True)
-        normals = np.divide(normals, length, out=np.zeros(points.shape), where=length > 0) * free * movable[:, None]
-        off = _stand_off(result, walls[own], vectors[own], distance)
+        normals = np.divide(normals, length, out=np.zeros(mesh.points.shape), where=length > 0) * free
+        off = _stand_off(mesh.points, walls[own], vectors[own], distance)
         # a wall's outward normal looks into its fiber
-        moved = result + off[:, None] * normals
+        points = mesh.points + off[:, None] * normals
         # beside a plane of the duct a fiber's vertex may have nothing of the mesh between itself and the outside
-        movable[((moved < limits[0]) | (moved > limits[1])).any(axis=1)] = 0.0
-        doubtful = np.arange(len(tets))
+        movable &= ((points >= limits[0]) & (points <= limits[1])).all(axis=1)
+        doubtful = near
         for _ in range(_RETREATS):
-            moved = np.where(movable[:, None] > 0, moved, result)
-            found = faults(moved, tets, across, doubtful)
-            harmed = (volumes(moved, tets[doubtful]) < _SMALLEST * start[doubtful]) | (sound[doubtful] & (found > 1.0))
-            if not harmed.any():
-                result = moved
+            moved = mesh.moved(np.where(movable[:, None], points, mesh.points))
+            flat = cell_volumes(moved.points, moved.tets[doubtful]) < _SMALLEST * start[row[doubtful]]
+            harmed = doubtful[flat | (sound[row[doubtful]] & faulty_cells(moved, doubtful))]
+            if not len(harmed):
+                mesh = moved
                 break
             stay = np.zeros(len(points), dtype=bool)
-            stay[tets[doubtful[harmed]]] = True
-            movable[stay] = 0.0
+            stay[mesh.tets[harmed]] = True
+            movable &= ~stay
             # only the cells at these vertices change, and the faces of those that touch them
-            changed = np.asarray(stay[tets].any(axis=1))
-            beside = across[changed]
-            changed[beside[beside >= 0]] = True
-            doubtful = np.flatnonzero(changed)
-    return result
+            doubtful = _with_neighbors(mesh, touching(mesh.tets, stay))
+            doubtful = doubtful[row[doubtful] >= 0]
+    return mesh
 
 
-def _own_walls(points: Floats, walls: Ints, distance: "FiberDistance") -> npt.NDArray[np.bool_]:
+def _with_neighbors(mesh: WorkingMesh, cells: Bools) -> Ints:
+    """Numbers of cells and of those behind their faces, ascending."""
+    chosen = cells.copy()
+    beside = mesh.across[cells]
+    chosen[beside[beside >= 0]] = True
+    return np.flatnonzero(chosen)
+
+
+def _own_walls(points: Floats, walls: Ints, distance: "FiberDistance") -> Bools:
     """Tell which walls lie on one fiber with all their corners, and their middles nearest to it."""
     pieces, fiber_of = distance.field[0], distance.field[2]
     corners = points[walls]
