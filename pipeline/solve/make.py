@@ -14,7 +14,7 @@ from pipeline.analytics.formulas.slip import knudsen, regime, slip_length
 from pipeline.analytics.models.pressure_models import pressure_model
 from pipeline.line import store
 from pipeline.line.places import kept_folder
-from pipeline.machine import peak_memory
+from pipeline.machine import cores, peak_memory
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.exports import OpenFoamCase
@@ -75,10 +75,11 @@ def _by_elements(
         case.enclosure.sides,
         case.solve.stokes,
         progress,
+        cores(),
     )
     store.save(field, into / "flow.npz")
     write_flow(field, flow.viscosity, into / "flow.vtu")
-    return solution, settled, SolvingCost(time.monotonic() - began, 1, peak_memory())
+    return solution, settled, SolvingCost(time.monotonic() - began, cores(), peak_memory())
 
 
 def _by_openfoam(

@@ -80,6 +80,11 @@ class Duct:
         return ends
 
     @cached_property
+    def held(self) -> Ints:
+        """Unknowns on the walls that hold the air."""
+        return np.unique(self.unknown[self.walls.wall])
+
+    @cached_property
     def area(self) -> float:
         """Area of the inlet."""
         return float(np.linalg.norm(self.face_areas(INLET).sum(axis=0)))

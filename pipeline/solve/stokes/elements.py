@@ -105,6 +105,24 @@ def _columns_of_rows(rows_of: Indices, columns_of: Indices, rows: int) -> tuple[
 
 
 @compiled
+def _transposed(start: Ints, column_of: Indices, columns: int) -> tuple[Ints, Indices, Indices]:
+    """Pattern by column: where each begins, the rows of its entries, and their places in the pattern by row."""
+    first = np.zeros(columns + 1, np.int64)
+    for column in column_of:
+        first[column + 1] += 1
+    for column in range(columns):
+        first[column + 1] += first[column]
+    row_of, place_of = np.empty(len(column_of), np.int32), np.empty(len(column_of), np.int32)
+    filled = first[:-1].copy()
+    for row in range(len(start) - 1):
+        for place in range(start[row], start[row + 1]):
+            at = filled[column_of[place]]
+            row_of[at], place_of[at] = row, place
+            filled[column_of[place]] += 1
+    return first, row_of, place_of
+
+
+@compiled
 def place_of(start: Ints, column_of: Indices, row: int, column: int) -> int:
     """Place of an entry in the pattern of compressed rows; it has to be there."""
     low, high = int(start[row]), int(start[row + 1]) - 1
@@ -237,6 +255,8 @@ class Matrices:
         Of the gradient's product, for one component of the velocity.
     div_start, div_column, div : arrays
         Rows by vertex, columns by node, (k, 3) values: minus the divergence against the pressure's functions.
+    grad_start, grad_row, grad_place : arrays
+        The divergence's pattern by column: rows by node, their vertices, and the places of their entries in `div`.
     vertex_start, vertex_column, mass, linear : arrays
         Of the pressure's mass and of the stiffness of linear elements.
     """
@@ -249,6 +269,9 @@ class Matrices:
     div_start: Ints
     div_column: Indices
     div: Floats
+    grad_start: Ints
+    grad_row: Indices
+    grad_place: Indices
     vertex_start: Ints
     vertex_column: Indices
     mass: Floats
@@ -288,8 +311,9 @@ def assemble(positions: Floats, cells: Ints, unknown: Ints, curved: npt.NDArray[
         )  # fmt: skip
     _add_straight(positions, cells, numbers, vertex_start, vertex_column, linear)
     return Matrices(
-        unknowns, vertices, start, column, stiff, div_start, div_column, div, vertex_start, vertex_column, mass, linear
-    )
+        unknowns, vertices, start, column, stiff, div_start, div_column, div,
+        *_transposed(div_start, div_column, unknowns), vertex_start, vertex_column, mass, linear,
+    )  # fmt: skip
 
 
 def div_entries(matrices: Matrices, row: Ints, column: Ints, values: Floats) -> Floats:

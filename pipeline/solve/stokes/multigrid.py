@@ -15,6 +15,7 @@ from pipeline.nouns.arrays import Floats, Ints
 from pipeline.solve.stokes import sweeps
 from pipeline.solve.stokes.conditions import Conditions
 from pipeline.solve.stokes.elements import Matrices
+from pipeline.solve.stokes.sharing import Team
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -41,6 +42,7 @@ class VelocityCycle:
     ends : (e, 2) int array
         Unknowns of the vertices at both ends of the middle ``matrices.vertices + k``.
     conditions : Conditions
+    team : Team
     carried : (k,) array, optional
         What inertia adds to the stiffness.
     reynolds : float
@@ -52,13 +54,13 @@ class VelocityCycle:
         matrices: Matrices,
         ends: Ints,
         conditions: Conditions,
+        team: Team,
         carried: npt.NDArray[np.float32] | None = None,
         reynolds: float = 0.0,
     ) -> None:
-        import pyamg
-        from scipy.sparse import csr_array, csr_matrix
+        from scipy.sparse import csr_array
 
-        self.start, self.column = matrices.start, matrices.column
+        self.team, self.start, self.column = team, matrices.start, matrices.column
         values, linear = matrices.stiff, csr_array((matrices.linear, matrices.vertex_column, matrices.vertex_start))
         rise = csr_array(
             (np.full(2 * len(ends), 0.5), ends.ravel(), np.arange(0, 2 * len(ends) + 1, 2)),
@@ -90,21 +92,14 @@ class VelocityCycle:
         self.coarse: list[tuple[Ints, Callable[[Floats], Floats]]] = []
         for axis in range(3):
             free = np.flatnonzero(self.fixed[: self.vertices, axis] == 0)
-            levels = pyamg.smoothed_aggregation_solver(
-                csr_matrix(linear[free][:, free]),
-                max_coarse=_SMALL,
-                strength=("symmetric", {"theta": 0.0}),
-                symmetry="hermitian" if carried is None else "nonsymmetric",
-            )
-            self.coarse.append((free, levels.aspreconditioner().matvec))
+            self.coarse.append((free, _aggregated(linear[free][:, free], carried is None)))
 
     def __call__(self, residual: Floats) -> Floats:
         """Give about the velocity, (unknowns, 3) array, that has this residual."""
         change = np.zeros_like(residual)
         rest = np.empty_like(residual)
-        arrays = (self.start, self.column, self.values)
-        sweeps.sweep(*arrays, self.over, self.fixed, residual, change, False)
-        sweeps.times(*arrays, change, rest)
+        self._smooth(residual, change, False)
+        self.team.over(0, len(rest), sweeps.times, self.start, self.column, self.values, change, rest)
         np.subtract(residual, rest, out=rest)
         rest[self.fixed != 0] = 0.0
         low = rest[: self.vertices] + self.fall @ rest[self.vertices :]
@@ -115,8 +110,38 @@ class VelocityCycle:
         rise = self.rise @ found
         rise[self.fixed[self.vertices :] != 0] = 0.0
         change[self.vertices :] += rise
-        sweeps.sweep(*arrays, self.over, self.fixed, residual, change, True)
+        self._smooth(residual, change, True)
         return change
+
+    def _smooth(self, residual: Floats, change: Floats, backward: bool) -> None:
+        """Sweep over the vertices, then over the edges' middles, or the other way round: shares of each at a time."""
+        kinds = ((0, self.vertices), (self.vertices, len(change)))
+        for kind in reversed(kinds) if backward else kinds:
+            self.team.over(
+                *kind, sweeps.sweep, self.start, self.column, self.values, self.over, self.fixed, residual,
+                change.copy(), kind, change, backward,
+            )  # fmt: skip
+
+
+def _aggregated(matrix: "csr_array", symmetric: bool) -> Callable[[Floats], Floats]:
+    """Smoothed aggregation of a matrix: a function that gives about the solution."""
+    import pyamg
+    from scipy.sparse import csr_matrix
+
+    # it draws the vectors from which it estimates eigenvalues: equal flows need equal ones
+    drawn = np.random.get_state()  # noqa: NPY002
+    np.random.seed(0)  # noqa: NPY002
+    try:
+        levels = pyamg.smoothed_aggregation_solver(
+            csr_matrix(matrix),
+            max_coarse=_SMALL,
+            strength=("symmetric", {"theta": 0.0}),
+            symmetry="hermitian" if symmetric else "nonsymmetric",
+        )
+    finally:
+        np.random.set_state(drawn)  # noqa: NPY002
+    cycle: Callable[[Floats], Floats] = levels.aspreconditioner().matvec
+    return cycle
 
 
 def _entries(matrix: "csr_array", start: Ints, column: npt.NDArray[np.int32]) -> Floats:

@@ -25,7 +25,8 @@ from pipeline.solve.stokes.creeping import creep
 from pipeline.solve.stokes.duct import Duct
 from pipeline.solve.stokes.inertia import with_inertia
 from pipeline.solve.stokes.passage import refuse_blocked
-from pipeline.solve.stokes.system import DuctFlow, System
+from pipeline.solve.stokes.sharing import team
+from pipeline.solve.stokes.system import DuctFlow, System, Tell
 
 CREEPING_REYNOLDS = 0.1
 """Fiber Reynolds number below which inertia is left out: it changes no drop that was measured by .5 % there."""
@@ -45,6 +46,7 @@ def solve_stokes(
     sides: str,
     settings: StokesSettings,
     progress: Progress,
+    cores: int = 1,
 ) -> tuple[Solution, FlowField, Settling]:
     """Solve for the steady flow through a meshed duct, with the wall that the case has and with the other one.
 
@@ -63,6 +65,8 @@ def solve_stokes(
     settings : StokesSettings
     progress : Progress
         Told the iteration, the pressure drop and its error.
+    cores : int
+        That share the work; what is found does not depend on it.
 
     Returns
     -------
@@ -87,23 +91,17 @@ def solve_stokes(
     scale = flow.viscosity * flow.face_velocity / unit
     creeping: dict[str, DuctFlow] = {}
     carried: dict[str, DuctFlow] = {}
-    # without slip first: it is a good start for the one with slip
-    for wall in ("no_slip", "slip") if fiber_wall == "slip" or length < unit else ("no_slip",):
-
-        def settling(iterations: int, drop: float, error: float, wall: str = wall) -> None:
-            # an error that falls from 1 to the tolerance, in even steps on a logarithmic scale
-            share = math.log(min(max(error, settings.tolerance), 1.0)) / math.log(settings.tolerance)
-            known = f", changed by {100 * error:.2g} %" if math.isfinite(error) else ""
-            way = wall.replace("_", " ") + (" with inertia" if wall in creeping else "")
-            progress(
-                f"solve: {way}, iteration {iterations}, pressure drop {drop * scale:.5g} Pa{known}", max(share, 0.0)
-            )
-
-        system = System(duct, length / unit if wall == "slip" else 0.0)
-        limits = settings.tolerance, settings.max_iterations, settling
-        creeping[wall] = creep(system, *limits, creeping.get("no_slip"))
-        if number > CREEPING_REYNOLDS and creeping[wall].settled:
-            carried[wall] = with_inertia(system, number, *limits, creeping[wall])
+    with team(cores) as threads:
+        # without slip first: it is a good start for the one with slip
+        for wall in ("no_slip", "slip") if fiber_wall == "slip" or length < unit else ("no_slip",):
+            told = _telling(wall.replace("_", " "), scale, settings.tolerance, progress)
+            # on its own: what one wall took is let go before the other is solved
+            creeping[wall], after = _solved(
+                System(duct, length / unit if wall == "slip" else 0.0, threads),
+                number, settings, told, creeping.get("no_slip"),
+            )  # fmt: skip
+            if after is not None:
+                carried[wall] = after
     found = {**creeping, **carried}
     field = _field(duct, found[fiber_wall], domain, flow, length if fiber_wall == "slip" else 0.0)
     refuse_compressed(flow, float(np.linalg.norm(field.velocity, axis=1).max()))
@@ -113,6 +111,29 @@ def solve_stokes(
         for wall, flown in found.items()
     )
     return _solution(duct, found, before, mesh, domain, flow, bed, fiber_wall), field, Settling(curves)
+
+
+def _telling(way: str, scale: float, tolerance: float, progress: Progress) -> Tell:
+    """Give the function that iterations tell of, with the wall's name and in Pa."""
+
+    def told(iterations: int, drop: float, error: float) -> None:
+        # an error that falls from 1 to the tolerance, in even steps on a logarithmic scale
+        share = math.log(min(max(error, tolerance), 1.0)) / math.log(tolerance)
+        known = f", changed by {100 * error:.2g} %" if math.isfinite(error) else ""
+        progress(f"solve: {way}, iteration {iterations}, pressure drop {drop * scale:.5g} Pa{known}", max(share, 0.0))
+
+    return told
+
+
+def _solved(
+    system: System, number: float, settings: StokesSettings, told: Tell, start: DuctFlow | None
+) -> tuple[DuctFlow, DuctFlow | None]:
+    """Solve for the creeping flow, and for the one with inertia where that counts."""
+    limits = settings.tolerance, settings.max_iterations, told
+    creeping = creep(system, *limits, start)
+    if number <= CREEPING_REYNOLDS or not creeping.settled:
+        return creeping, None
+    return creeping, with_inertia(system, number, *limits, creeping)
 
 
 def _solution(

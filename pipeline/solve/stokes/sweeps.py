@@ -1,6 +1,6 @@
 """Products with the matrices of a flow, and smoothing: loops over compressed rows, three components at once.
 
-Compiled by numba: imported only where a flow is solved.
+Each takes the rows of one share, and writes to them alone. Compiled by numba: imported only where a flow is solved.
 """
 
 # SPDX-License-Identifier: GPL-3.0-or-later
@@ -8,7 +8,7 @@ Compiled by numba: imported only where a flow is solved.
 import numpy as np
 import numpy.typing as npt
 
-from pipeline.geometry.compiled import compiled
+from pipeline.geometry.compiled import compiled_for_threads
 from pipeline.nouns.arrays import Floats, Ints
 
 Indices = npt.NDArray[np.int32]
@@ -17,10 +17,10 @@ Blocks = npt.NDArray[np.float32]
 Values = Floats | Blocks
 
 
-@compiled
-def times(start: Ints, column: Indices, values: Values, x: Floats, y: Floats) -> None:
+@compiled_for_threads
+def times(first: int, end: int, start: Ints, column: Indices, values: Values, x: Floats, y: Floats) -> None:
     """Matrix of numbers times (n, 3) vectors, into y."""
-    for row in range(len(start) - 1):
+    for row in range(first, end):
         a, b, c = 0.0, 0.0, 0.0
         for place in range(start[row], start[row + 1]):
             value, j = values[place], column[place]
@@ -30,10 +30,10 @@ def times(start: Ints, column: Indices, values: Values, x: Floats, y: Floats) ->
         y[row, 0], y[row, 1], y[row, 2] = a, b, c
 
 
-@compiled
-def add_blocks(start: Ints, column: Indices, values: Blocks, x: Floats, y: Floats) -> None:
+@compiled_for_threads
+def add_blocks(first: int, end: int, start: Ints, column: Indices, values: Blocks, x: Floats, y: Floats) -> None:
     """Matrix of (3, 3) blocks times (n, 3) vectors, added to y."""
-    for row in range(len(start) - 1):
+    for row in range(first, end):
         a, b, c = 0.0, 0.0, 0.0
         for place in range(start[row], start[row + 1]):
             j = column[place]
@@ -46,10 +46,10 @@ def add_blocks(start: Ints, column: Indices, values: Blocks, x: Floats, y: Float
         y[row, 2] += c
 
 
-@compiled
-def divergence(start: Ints, column: Indices, values: Floats, x: Floats, y: Floats) -> None:
+@compiled_for_threads
+def divergence(first: int, end: int, start: Ints, column: Indices, values: Floats, x: Floats, y: Floats) -> None:
     """Matrix of (k, 3) entries times an (n, 3) vector, into y of one number per row."""
-    for row in range(len(start) - 1):
+    for row in range(first, end):
         total = 0.0
         for place in range(start[row], start[row + 1]):
             j = column[place]
@@ -57,32 +57,57 @@ def divergence(start: Ints, column: Indices, values: Floats, x: Floats, y: Float
         y[row] = total
 
 
-@compiled
-def add_gradient(start: Ints, column: Indices, values: Floats, p: Floats, y: Floats) -> None:
-    """Add the transposed of `divergence`'s matrix times p to y."""
-    for row in range(len(start) - 1):
-        value = p[row]
-        for place in range(start[row], start[row + 1]):
-            j = column[place]
-            y[j, 0] += values[place, 0] * value
-            y[j, 1] += values[place, 1] * value
-            y[j, 2] += values[place, 2] * value
-
-
-@compiled
-def sweep(
-    start: Ints, column: Indices, values: Values, over: Floats, fixed: Flags, right: Floats, x: Floats, backward: bool
+@compiled_for_threads
+def add_gradient(
+    first: int, end: int, start: Ints, row_of: Indices, place_of: Indices, values: Floats, p: Floats, y: Floats
 ) -> None:
-    """One Gauss-Seidel sweep of each component in place; `over` is one over the diagonal, what is fixed stays."""
-    rows = len(start) - 1
-    for step in range(rows):
-        row = rows - 1 - step if backward else step
+    """Add the transposed of `divergence`'s matrix times p to y; its rows name the places of their entries there."""
+    for row in range(first, end):
+        a, b, c = 0.0, 0.0, 0.0
+        for k in range(start[row], start[row + 1]):
+            place, value = place_of[k], p[row_of[k]]
+            a += values[place, 0] * value
+            b += values[place, 1] * value
+            c += values[place, 2] * value
+        y[row, 0] += a
+        y[row, 1] += b
+        y[row, 2] += c
+
+
+@compiled_for_threads
+def sweep(
+    first: int,
+    end: int,
+    start: Ints,
+    column: Indices,
+    values: Values,
+    over: Values,
+    fixed: Flags,
+    right: Floats,
+    before: Floats,
+    others: tuple[int, int],
+    x: Floats,
+    backward: bool,
+) -> None:
+    """One Gauss-Seidel sweep of each component of a share's rows in place.
+
+    `over` is one over the diagonal; what is fixed stays. Rows of the other shares, from ``others[0]`` to before
+    ``others[1]``, change at the same time: what they were is in `before`.
+    """
+    low, high = others
+    for step in range(end - first):
+        row = end - 1 - step if backward else first + step
         a, b, c = right[row, 0], right[row, 1], right[row, 2]
         for place in range(start[row], start[row + 1]):
             value, j = values[place], column[place]
-            a -= value * x[j, 0]
-            b -= value * x[j, 1]
-            c -= value * x[j, 2]
+            if low <= j < high and not first <= j < end:
+                a -= value * before[j, 0]
+                b -= value * before[j, 1]
+                c -= value * before[j, 2]
+            else:
+                a -= value * x[j, 0]
+                b -= value * x[j, 1]
+                c -= value * x[j, 2]
         if not fixed[row, 0]:
             x[row, 0] += over[row] * a
         if not fixed[row, 1]:

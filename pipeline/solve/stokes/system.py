@@ -18,6 +18,7 @@ from pipeline.solve.stokes.convection import Convection
 from pipeline.solve.stokes.duct import Duct
 from pipeline.solve.stokes.elements import div_entries
 from pipeline.solve.stokes.multigrid import VelocityCycle, pressure_scale
+from pipeline.solve.stokes.sharing import Team
 
 BALANCE = 1e-6
 """Share of the pressure's force by which the forces may miss each other once a flow has settled."""
@@ -93,18 +94,20 @@ class System:
     duct : Duct
     slip_length : float
         On the fibers, in the mesh's unit; 0 for none.
+    team : Team, optional
+        Who shares the work; one core does all where there is none.
     """
 
-    def __init__(self, duct: Duct, slip_length: float) -> None:
-        self.duct, self.matrices = duct, duct.matrices
+    def __init__(self, duct: Duct, slip_length: float, team: Team | None = None) -> None:
+        self.duct, self.matrices, self.team = duct, duct.matrices, team or Team()
         self.conditions = conditions = duct.conditions(slip_length)
         self.div = self.matrices.div
         if conditions.through is not None:
             self.div = self.div + div_entries(self.matrices, *conditions.through)
         self.split = 3 * self.matrices.unknowns
-        self.cycle = VelocityCycle(self.matrices, duct.ends, conditions)
+        self.cycle = VelocityCycle(self.matrices, duct.ends, conditions, self.team)
         self.scale_pressure = pressure_scale(self.matrices)
-        self.wall = np.unique(duct.unknown[duct.walls.wall])
+        self.wall = duct.held
         self.entrance = np.unique(duct.unknown[duct.nodes.of_triangles(duct.triangles[INLET])])
         self.convection: Convection | None = None
         self.stiff, self.bent = self.matrices.stiff, np.empty((0, 3, 3), np.float32)
@@ -127,10 +130,14 @@ class System:
     def _stokes(self, stiff: Floats, div: Floats, velocity: Floats, pressure: Floats) -> tuple[Floats, Floats]:
         m = self.matrices
         force, divergence = np.empty_like(velocity), np.empty(m.vertices)
-        sweeps.times(m.start, m.column, stiff, velocity, force)
-        sweeps.add_gradient(m.div_start, m.div_column, div, pressure, force)
-        sweeps.divergence(m.div_start, m.div_column, div, velocity, divergence)
+        self.team.over(0, m.unknowns, sweeps.times, m.start, m.column, stiff, velocity, force)
+        self._add_gradient(div, pressure, force)
+        self.team.over(0, m.vertices, sweeps.divergence, m.div_start, m.div_column, div, velocity, divergence)
         return force, divergence
+
+    def _add_gradient(self, div: Floats, pressure: Floats, force: Floats) -> None:
+        m = self.matrices
+        self.team.over(0, m.unknowns, sweeps.add_gradient, m.grad_start, m.grad_row, m.grad_place, div, pressure, force)
 
     def linearize(self, x: Floats, both: bool) -> None:
         """Let `times` be the change of the equations about an iterate.
@@ -146,14 +153,17 @@ class System:
         self.stiff = self.matrices.stiff + carried
         # the former one is let go before its follower is made
         del self.cycle
-        self.cycle = VelocityCycle(self.matrices, self.duct.ends, self.conditions, carried, self.convection.reynolds)
+        self.cycle = VelocityCycle(
+            self.matrices, self.duct.ends, self.conditions, self.team, carried, self.convection.reynolds
+        )
 
     def times(self, x: Floats) -> Floats:
         """Apply the equations' matrix."""
         velocity = x[: self.split].reshape(-1, 3)
         force, divergence = self._stokes(self.stiff, self.div, velocity, x[self.split :])
         if len(self.bent):
-            sweeps.add_blocks(self.matrices.start, self.matrices.column, self.bent, velocity, force)
+            m = self.matrices
+            self.team.over(0, m.unknowns, sweeps.add_blocks, m.start, m.column, self.bent, velocity, force)
         return self._projected(force, divergence, x)
 
     def _projected(self, force: Floats, divergence: Floats, x: Floats) -> Floats:
@@ -175,7 +185,7 @@ class System:
         m = self.matrices
         pressure = -self.scale_pressure * x[self.split :] / _WEIGHT
         force = np.zeros((m.unknowns, 3))
-        sweeps.add_gradient(m.div_start, m.div_column, self.div, -pressure, force)
+        self._add_gradient(self.div, -pressure, force)
         force += x[: self.split].reshape(-1, 3)
         self.conditions.project(force)
         velocity = self.cycle(force)
@@ -200,10 +210,12 @@ class System:
         Without inertia the system is symmetric and its right side is the drop's own functional: the drop less the
         product of iterate and residual, the sharper one, is wrong by the square of the iterate's error only.
         """
-        rest = self.rest(x)
-        rest[self.split :] /= _WEIGHT
         velocity = self.velocity(x)
-        force, _ = self.forces(velocity, x[self.split :])
+        force, divergence = self.forces(velocity, x[self.split :])
+        # where air slips, what it may not cross changes the gradient
+        same = self.conditions.through is None
+        rest = -self._projected(force.copy(), divergence, x) if same else self.rest(x)
+        rest[self.split :] /= _WEIGHT
         inlet, drag = float(force[self.entrance, 2].sum()), -float(force[self.wall, 2].sum())
         gained = 0.0 if self.convection is None else self.convection.flux(velocity)
         # the pressure's functions sum to 1: the sum of their residuals is the air that is lost

@@ -11,6 +11,7 @@ from pipeline.solve.stokes.nodes import Nodes
 
 TOLERANCE = 1e-6
 """Largest distance of two vertices that are the same, over the distance of the sides."""
+_CURVE_BITS = 16  # of each coordinate's place: three of them fit into an integer
 
 
 def unknown_of_nodes(points: Floats, nodes: Nodes, triangles: dict[str, Ints], cyclic: bool) -> Ints:
@@ -36,15 +37,29 @@ def unknown_of_nodes(points: Floats, nodes: Nodes, triangles: dict[str, Ints], c
         If two opposite sides do not carry the same nodes.
     """
     partner = np.arange(nodes.count)
+    places = np.concatenate([points, nodes.middles(points)])
     if cyclic:
-        places = np.concatenate([points, nodes.middles(points)])
         for low, high in (SIDES[:2], SIDES[2:]):
             _pair(places, nodes, triangles, low, high, partner)
         # an edge of the duct lies on two sides: its image's image
         partner = partner[partner]
-    alone = partner == np.arange(nodes.count)
-    number = np.cumsum(alone) - 1
-    return np.asarray(number[partner], np.int64)
+    alone = np.flatnonzero(partner == np.arange(nodes.count))
+    # neighbors in space get neighboring numbers, which keeps what a loop over rows reads close together
+    order = np.lexsort((_along_a_curve(places[alone]), alone >= nodes.vertices))
+    number = np.empty(nodes.count, np.int64)
+    number[alone[order]] = np.arange(len(alone))
+    return number[partner]
+
+
+def _along_a_curve(places: Floats) -> Ints:
+    """Place of each point along Morton's curve, which visits a cube's eighths one after the other, and so on within."""
+    low = places.min(axis=0)
+    grid = ((places - low) / (places - low).max() * (2**_CURVE_BITS - 1)).astype(np.int64)
+    key = np.zeros(len(places), np.int64)
+    for bit in range(_CURVE_BITS):
+        for axis in range(3):
+            key |= (grid[:, axis] >> bit & 1) << (3 * bit + axis)
+    return key
 
 
 def _pair(places: Floats, nodes: Nodes, triangles: dict[str, Ints], low: str, high: str, partner: Ints) -> None:
