@@ -6,7 +6,6 @@ Linux is what is tested. Elsewhere a function does what that system offers, and 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import contextlib
-import os
 import sys
 import weakref
 from collections.abc import Iterator
@@ -42,11 +41,6 @@ def lock(file: IO[Any]) -> None:
 def held_locks() -> list[int]:
     """Descriptors of the files that this process holds: where another process has one too, it holds as long as both."""
     return [file.fileno() for file in _LOCKED if not file.closed]
-
-
-def cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def peak_memory() -> int:
