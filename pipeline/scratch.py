@@ -21,7 +21,7 @@ from pipeline import machine
 
 _OWNER = ".owner"  # locked by the process that the folder belongs to, and by the guardians of what it started
 _NEW = ".owner.new"
-_OURS = re.compile(r"fibertwin-(mesh|pictures|snappy|solver|numba|doctor)-\w+")
+_OURS = re.compile(r"fibertwin-(mesh|pictures|pdf|snappy|solver|numba|doctor)-\w+")
 # seconds after which a folder without an owner was left by a process that was killed while making it
 _MAKING = 60.0
 

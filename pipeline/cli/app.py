@@ -595,22 +595,37 @@ def study(
 
 
 @app.command
-def report(run: Path, *, quiet: Annotated[bool, Parameter(negative="")] = False) -> None:
-    """Write report.html of a run: what was made, whether to trust it, what to do next.
+def report(
+    *runs: Path,
+    pdf: Annotated[bool, Parameter(negative="")] = False,
+    out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    quiet: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Write report.html of a run: the number, whether to trust it, what was made; or of several runs side by side.
 
     The page holds its pictures and asks nothing of the network. A run writes it at its end; this writes it again, or
     for a run that stopped half way.
 
     Parameters
     ----------
-    run
-        The folder of a run, whole or partial.
+    runs
+        The folder of a run, whole or partial; of two to six for a page that compares them with the first.
+    pdf
+        Print the page as PDF too, by Chromium, Chrome or Edge, beside it.
+    out
+        Write the page into this file (.html): a copy of a run's, or that of several, which is ``compared.html`` unless
+        named.
+    as_json
+        Print all that the page shows as JSON with SI numbers; for one run ``RUN/report/page.json`` has it too.
     quiet
         Print nothing but errors.
     """
-    from pipeline.cli.viewing import write_page
+    from pipeline.cli.viewing import write_pages
 
-    write_page(run, quiet)
+    if not runs:
+        raise CaseError("report of which run? fibertwin report RUN, or several: fibertwin report A B")
+    write_pages(runs, out, pdf, as_json, quiet)
 
 
 @app.command

@@ -1,7 +1,9 @@
-"""`fibertwin view` and `fibertwin report`: look at a run in a window, as a picture, or as a page."""
+"""`fibertwin view` and `fibertwin report`: look at a run in a window, as a picture, or as a page; or at several."""
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import json
+import sys
 from pathlib import Path
 
 from rich.console import Console
@@ -11,11 +13,17 @@ from pipeline.errors import CaseError, StageError
 from pipeline.line.places import disk_trouble_explained, own_file, own_folder
 from pipeline.line.run import Run, report
 from pipeline.nouns.fibers import Mat
+from pipeline.progress import Progress
+from pipeline.report.page.compared_page import comparison_json, write_comparison
+from pipeline.report.pdf import browser, print_page
+from pipeline.report.stage import PAGE_JSON, REPORT
 from pipeline.report.views.painter import possible
 from pipeline.report.views.render import Painting, screenless
 from pipeline.report.views.scenes import SCENES, Subject, show
 from pipeline.report.views.subject import subject_of
 
+COMPARED = "compared.html"
+"""Page of several runs when nobody names a file."""
 PICTURES = "pictures"
 """Folder of a run that pictures go into when nobody names a file."""
 _KINDS = {".png": "png", ".jpg": "jpg", ".jpeg": "jpg"}
@@ -23,13 +31,46 @@ _FIRST_CHOICE = "duct"
 _NOTHING = "{} has no mat yet, so there is nothing to see; fibertwin run makes one"
 
 
-def write_page(folder: Path, quiet: bool) -> None:
-    """Write a run's page and say where it is."""
-    out = Console()
-    with listening(out, quiet) as progress:
-        page = report(folder, progress)
-    if not quiet:
-        out.print(str(page), markup=False, highlight=False, soft_wrap=True)
+def write_pages(folders: tuple[Path, ...], into: Path | None, pdf: bool, as_json: bool, quiet: bool) -> None:
+    """Write the page of a run, or of several side by side, and say where it is."""
+    if pdf:
+        browser()  # before anything is made for nothing
+    with listening(Console(stderr=True), quiet or as_json) as progress:
+        page = _page_of_one(folders[0], into, progress) if len(folders) == 1 else _compared(folders, into, progress)
+        made = [page]
+        if pdf:
+            progress("report: printing")
+            made.append(page.with_suffix(".pdf"))
+            with disk_trouble_explained(made[-1]):
+                print_page(page, made[-1])
+    if as_json:
+        sys.stdout.write(_json_of(folders))
+    elif not quiet:
+        for path in made:
+            Console().print(str(path), markup=False, highlight=False, soft_wrap=True)
+
+
+def _page_of_one(folder: Path, into: Path | None, progress: Progress) -> Path:
+    page = report(folder, progress)
+    if into is None:
+        return page
+    with disk_trouble_explained(into):
+        into.parent.mkdir(parents=True, exist_ok=True)
+        into.write_bytes(page.read_bytes())
+    return into
+
+
+def _compared(folders: tuple[Path, ...], into: Path | None, progress: Progress) -> Path:
+    path = into or Path(COMPARED)
+    with disk_trouble_explained(path):
+        write_comparison([Run.opened(folder) for folder in folders], path, progress)
+    return path
+
+
+def _json_of(folders: tuple[Path, ...]) -> str:
+    if len(folders) == 1:
+        return (folders[0] / REPORT.name / PAGE_JSON).read_text(encoding="utf-8")
+    return json.dumps(comparison_json([Run.opened(folder) for folder in folders]), indent=2, allow_nan=False) + "\n"
 
 
 def view_run(folder: Path, scene: str | None, screenshot: Path | None) -> None:

@@ -6,6 +6,8 @@ from pipeline.line.stage import Entry, Stage
 
 PAGE = "report.html"
 """File of the stage that holds the page."""
+PAGE_JSON = "page.json"
+"""File of the stage that holds all that the page shows, for programs."""
 
 REPORT = Stage(
     name="report",

@@ -32,18 +32,13 @@ _SAME = 1e-9  # values that differ by less, relatively, differ by rounding
 
 
 def diameter_histogram(mat: Mat) -> Markup:
-    """Count the fibers by diameter."""
+    """Count the fibers by diameter, of which there is more than one."""
     from matplotlib.ticker import MaxNLocator
 
     diameters = 2e6 * mat.radius
 
     def draw(axes: "Axes") -> None:
-        spread = float(diameters.max() - diameters.min())
-        same = spread <= 1e-6 * float(diameters.max())
-        bins = [0.95 * diameters[0], 1.05 * diameters[0]] if same else min(30, 5 + mat.fibers // 4)
-        axes.hist(diameters, bins=bins, color=BLUE)
-        if same:
-            axes.set_xlim(0, 2 * diameters[0])
+        axes.hist(diameters, bins=min(30, 5 + mat.fibers // 4), color=BLUE)
         axes.set(xlabel="fiber diameter [µm]", ylabel="fibers", title="Diameters")
         axes.yaxis.set_major_locator(MaxNLocator(integer=True))
 

@@ -16,6 +16,7 @@ from pipeline.nouns.flow import Settling, Solution, SolvingCost
 from pipeline.nouns.mat_measures import MatMeasures
 from pipeline.nouns.section import Charts, Columns, Facts, Part, Picture, Pictures, Section, Table, Text
 from pipeline.report.page import charts, words
+from pipeline.report.page.headline import wall_of
 
 _WIDE = 4  # columns of a table from which it takes the width of the page
 
@@ -50,11 +51,11 @@ def solution(content: Results) -> Section | None:
         return None
     converged = read_convergence(content.folder)
     facts = [
-        ("pressure drop", f"{s.pressure_drop:.4g} Pa, {_WALLS[s.fiber_wall]}"),
+        ("pressure drop", f"{s.pressure_drop:.4g} Pa, {wall_of(s.fiber_wall)}"),
         *_both_walls(s),
         ("permeability of the mat", f"{1e12 * s.permeability:.4g} µm²"),
-        ("drag on the fibers", f"{s.drag:.4g} N"),
-        ("flow rate", f"{s.flow_rate:.4g} m³/s"),
+        ("drag on the fibers", f"{1e9 * s.drag:.4g} nN"),
+        ("flow rate", f"{1e9 * s.flow_rate:.4g} mm³/s"),
         ("forces and mass balance to", f"{abs(s.force_balance_error):.1g} and {abs(s.mass_balance_error):.1g}"),
         ("iterations", f"{s.iterations:,}, {'settled' if s.converged else 'not settled'}"),
     ]
@@ -102,9 +103,6 @@ def solution(content: Results) -> Section | None:
         parts.append(Table("", ("model", "Pa from the mesh's solidity", "against CFD"), against))
         parts += _outside_the_models(s, found)
     return Section("solution", "Flow", "Solved flow", tuple(parts))
-
-
-_WALLS = {"slip": "with slip on the fibers", "no_slip": "without slip on the fibers"}
 
 
 def _both_walls(s: Solution) -> list[tuple[str, str]]:

@@ -9,13 +9,15 @@ from pipeline.line.results import Results
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.fibers import Mat
 from pipeline.nouns.fidelity import Fidelity
-from pipeline.nouns.mat_measures import MatMeasures
+from pipeline.nouns.mat_measures import DiameterMoments, MatMeasures
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.mesh_measures import MeshingCost, TetmeshMeasures
 from pipeline.nouns.section import Charts, Columns, Facts, Picture, Pictures, Section
 from pipeline.nouns.surface import Surface
 from pipeline.quality.kinds import kinds_in_words
 from pipeline.report.page import charts
+
+_SAME = 1e-6  # diameters that differ by less, relatively, are told as one
 
 
 def mat(content: Results) -> Section | None:
@@ -24,7 +26,9 @@ def mat(content: Results) -> Section | None:
     if mat is None:
         return None
     facts = [("made by", mat.origin), ("seed", str(mat.seed) if mat.seed >= 0 else "none: nobody drew these fibers")]
-    figures = [charts.diameter_histogram(mat), charts.orientation_histogram(mat)]
+    figures = [charts.orientation_histogram(mat)]
+    if float(np.ptp(mat.radius)) > _SAME * float(mat.radius.max()):
+        figures.insert(0, charts.diameter_histogram(mat))
     if measures is not None:
         d = measures.diameters
         xx, yy, zz = (measures.orientation[k][k] for k in range(3))
@@ -33,22 +37,26 @@ def mat(content: Results) -> Section | None:
             ("summed length", length(measures.total_length)),
             ("coverage", f"{measures.coverage:.4g}, and {measures.covered_fraction:.1%} of the face lies under fibers"),
             ("thickness", f"{length(measures.thickness)}; mean height of the top {length(measures.robust_thickness)}"),
-            ("nominal solidity", f"{measures.solidity:.3%} (what fibers share counts twice)"),
-            ("fiber diameter", f"{length(d.mean)} ± {_deviation(d.std)}, from {length(d.min)} to {length(d.max)}"),
-            ("mean diameter by surface", length(d.surface_weighted)),
+            ("nominal solidity", f"{measures.solidity:.2%} (what fibers share counts twice)"),
+            *_diameters(d),
             ("contacts of a fiber", f"{measures.contacts_per_fiber:.3g}"),
             ("orientation tensor, diagonal", f"xx {xx:.3f}, yy {yy:.3f}, zz {zz:.3f}"),
         ]
         figures.append(charts.thickness_profile(measures))
     if surface is not None:
-        facts.append(("united surface", f"{len(surface.triangles):,} triangles, solidity {surface.solidity:.3%}"))
+        facts.append(("united surface", f"{len(surface.triangles):,} triangles, solidity {surface.solidity:.2%}"))
     top = Picture("mat-top", "From downstream: x to the right, y up. One color per fiber; twelve colors take turns.")
     side = Picture("mat-side", "From the side: x to the right, the air flows upward.")
     return Section("mat", "Mat", "The mat", (Columns(((top,), (side,))), Facts(tuple(facts)), Charts(tuple(figures))))
 
 
-def _deviation(std: float) -> str:
-    return length(std) if std > 0 else "0"
+def _diameters(d: DiameterMoments) -> list[tuple[str, str]]:
+    if d.max - d.min <= _SAME * d.max:
+        return [("fiber diameter", f"{length(d.mean)}, all equal")]
+    return [
+        ("fiber diameter", f"{length(d.mean)} ± {length(d.std)}, from {length(d.min)} to {length(d.max)}"),
+        ("mean diameter by surface", length(d.surface_weighted)),
+    ]
 
 
 def duct(content: Results) -> Section | None:
@@ -65,12 +73,7 @@ def duct(content: Results) -> Section | None:
         ("air", f"{1e18 * domain.volume:,.0f} µm³"),
         ("face velocity", f"{100 * content.case.flow.face_velocity:.4g} cm/s"),
     )
-    picture = Picture(
-        "duct",
-        "The air enters through the inlet (blue) and leaves through the outlet (orange); "
-        "the thin frame is the mat's slab.",
-    )
-    return Section("duct", "Duct", "The mat in its duct", (picture, Facts(facts)))
+    return Section("duct", "Duct", "The mat in its duct", (Facts(facts),))
 
 
 def mesh(content: Results) -> Section | None:

@@ -64,7 +64,7 @@ def checks(content: Results) -> list[Check]:
 
 
 def verdict(quality: QualityReport | None) -> tuple[str, str]:
-    """Give the mark and the words of the whole: that of the mesh, for only a mesh can be unfit."""
+    """Give the mark and the words of a mesh."""
     if quality is None:
         return NOTE, "no mesh yet"
     placed = ", every fiber is in its place" if quality.fibers else ""
@@ -73,6 +73,22 @@ def verdict(quality: QualityReport | None) -> tuple[str, str]:
         "warn": (NOTE, "mesh is usable, with a loss of accuracy"),
         "fail": (BAD, "mesh is not fit for a solver"),
     }[quality.verdict]
+
+
+def whole_verdict(content: Results) -> tuple[str, str]:
+    """Give the mark and the words of a run: the mesh's verdict, and the solution's where there is one."""
+    (mark, mesh), solution = verdict(content.get(QualityReport)), content.get(Solution)
+    if solution is None:
+        return mark, mesh
+    if not solution.converged:
+        return BAD, f"{mesh}, but the flow has not settled"
+    balanced = _balanced(solution)
+    words = "the flow has settled and balances" if balanced else "the flow has settled but does not balance"
+    return (mark if balanced or mark == BAD else NOTE), f"{mesh}, {words}"
+
+
+def _balanced(solution: Solution) -> bool:
+    return abs(solution.force_balance_error) < _FLUX_ERROR and abs(solution.mass_balance_error) < _FLUX_ERROR
 
 
 def cells(report: QualityReport) -> Check:
@@ -157,7 +173,7 @@ def _models(c: Comparison, solution: Solution | None) -> list[Check]:
 
 
 def _solver(solution: Solution) -> list[Check]:
-    balanced = abs(solution.force_balance_error) < _FLUX_ERROR and abs(solution.mass_balance_error) < _FLUX_ERROR
+    balanced = _balanced(solution)
     return [
         Check(
             GOOD if solution.converged else BAD,
