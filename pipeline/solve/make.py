@@ -25,6 +25,7 @@ from pipeline.nouns.surface import Surface
 from pipeline.openfoam.environment import SOLVER, openfoam_missing
 from pipeline.progress import Progress
 from pipeline.solve.bed import Bed
+from pipeline.solve.paraview import write_paraview
 from pipeline.solve.regime import mach, refuse_regime, reynolds
 from pipeline.solve.running import seconds_spent, settling, solve
 
@@ -80,6 +81,7 @@ def _by_elements(
     )
     store.save(field, into / "flow.npz")
     write_flow(field, flow.viscosity, into / "flow.vtu")
+    write_paraview(into)
     return solution, settled, SolvingCost(time.monotonic() - began, cores(), peak_memory())
 
 

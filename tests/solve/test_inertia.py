@@ -10,9 +10,11 @@ import pytest
 from pipeline.errors import StageError
 from pipeline.nouns.flow import Flow
 from pipeline.solve.regime import refuse_compressed, refuse_regime, reynolds
-from pipeline.solve.stokes import solver
+from pipeline.solve.stokes import inertia, solver
 from pipeline.solve.stokes.convection import Convection
+from pipeline.solve.stokes.creeping import creep
 from pipeline.solve.stokes.duct import Duct
+from pipeline.solve.stokes.system import System
 from tests.openfoam import AIR
 from tests.solve.rows import rows
 from tests.solve.test_stokes import f_star, solved
@@ -140,3 +142,20 @@ def test_air_that_is_compressed_in_the_gaps_alone_is_refused() -> None:
 
 def test_the_reynolds_number_is_that_of_the_face_velocity_and_the_diameter() -> None:
     assert reynolds(at_reynolds(2.0), 2 * RADIUS) == pytest.approx(2.0)
+
+
+def test_steps_that_lead_nowhere_end_with_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    system = System(small_duct(), 0.0)
+    still = creep(system, 1e-4, 500, lambda *told: None)
+    # no flow settles within one step of Picard
+    monkeypatch.setattr(inertia, "_STEPS", 1)
+    with pytest.raises(StageError, match=r"does not settle \(residual .* after \d+ iterations\).*lower flow"):
+        inertia.with_inertia(system, 5.0, 1e-4, 500, lambda *told: None, still)
+
+
+def test_a_creeping_flow_that_stalls_says_so_and_what_to_do() -> None:
+    system = System(small_duct(), 0.0)
+    # as if cells were so flat that preconditioning did nothing
+    system.precondition = lambda x: x  # type: ignore[method-assign]
+    with pytest.raises(StageError, match=r"stalls after \d+ iterations .* too flat .* tetmesh.engine"):
+        creep(system, 1e-6, 5000, lambda *told: None)

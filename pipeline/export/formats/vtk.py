@@ -137,6 +137,7 @@ def format_vtm(patches: tuple[Patch, ...]) -> str:
     --------
     >>> print(format_vtm((Patch("inlet", 0, 1),)))
     <?xml version="1.0"?>
+    <!-- the flow of a run that is solved: ../../solve/flow.vtu; ../../solve/open_in_paraview.py shows both -->
     <VTKFile type="vtkMultiBlockDataSet" version="1.0" byte_order="LittleEndian">
       <vtkMultiBlockDataSet>
         <DataSet index="0" name="internal" file="internal.vtu"/>
@@ -154,6 +155,7 @@ def format_vtm(patches: tuple[Patch, ...]) -> str:
     )
     return (
         '<?xml version="1.0"?>\n'
+        "<!-- the flow of a run that is solved: ../../solve/flow.vtu; ../../solve/open_in_paraview.py shows both -->\n"
         '<VTKFile type="vtkMultiBlockDataSet" version="1.0" byte_order="LittleEndian">\n'
         "  <vtkMultiBlockDataSet>\n"
         f'    <DataSet index="0" name="internal" file="{VOLUME}"/>\n'

@@ -216,7 +216,8 @@ def steps(content: Results) -> list[Step]:
             Step("Send them as one file that turns in any browser.", f"fibertwin view {folder} --html model.html")
         )
     if (content.folder / "solve" / "flow.vtu").is_file():
-        found.append(Step("Open velocity and pressure in ParaView.", f"paraview {folder}/solve/flow.vtu"))
+        script = f"{folder}/solve/open_in_paraview.py"
+        found.append(Step("Open speed, pressure and streamlines in ParaView.", f"paraview --script={script}"))
     elif "vtk" in exported:
         found.append(Step("Open the mesh and its quality in ParaView.", f"paraview {folder}/export/vtk/mesh.vtm"))
     if comparison is not None:
