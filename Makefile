@@ -60,7 +60,7 @@ verify: setup  ## Solve arrays and mats, and write what docs/verification.md sho
 
 docs: setup  ## Build the site of docs/ into build/site, with the notebook run and the gallery drawn anew
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[docs]'
-	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --site-dir build/site
+	$(BIN)/python docs/build.py build/site
 
 constraints:  ## Renew constraints.txt: the newest versions that pip finds, in an environment of their own
 	@$(PYTHON) -m venv build/constraints

@@ -14,9 +14,8 @@ from pathlib import Path
 
 from pipeline.case import read_case
 from pipeline.cli.bundled import found
-from pipeline.geometry.threads import cores
 from pipeline.line import store
-from pipeline.machine import peak_memory
+from pipeline.machine import cores, peak_memory
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.progress import silent

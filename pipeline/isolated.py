@@ -12,9 +12,8 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TypeVar
 
-import psutil
-
 from pipeline.errors import FibertwinError
+from pipeline.machine import address_space
 
 _T = TypeVar("_T")
 _SECONDS = 60.0
@@ -85,7 +84,7 @@ def _answer(read: Callable[[Path], _T], path: Path, to: Connection, seconds: flo
     os.dup2(nothing, 2)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_CPU, (int(seconds), int(seconds) + 1))
-    bound = psutil.Process().memory_info().vms + psutil.virtual_memory().available
+    bound = address_space()
     soft, hard = resource.getrlimit(resource.RLIMIT_AS)
     resource.setrlimit(resource.RLIMIT_AS, (bound if soft == resource.RLIM_INFINITY else min(bound, soft), hard))
     found: object

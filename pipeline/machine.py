@@ -6,12 +6,11 @@ Linux is what is tested. Elsewhere a function does what that system offers, and 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import contextlib
+import os
 import sys
 import weakref
 from collections.abc import Iterator
 from typing import IO, Any
-
-import psutil
 
 _LOCKED: "weakref.WeakSet[IO[Any]]" = weakref.WeakSet()
 
@@ -43,9 +42,31 @@ def held_locks() -> list[int]:
     return [file.fileno() for file in _LOCKED if not file.closed]
 
 
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def free_memory() -> int:
+    """Memory of this machine that a process may still take [byte]."""
+    # psutil takes a third as long to load as numpy, which no command that asks nothing of the kind should wait for
+    import psutil
+
+    return int(psutil.virtual_memory().available)
+
+
+def address_space() -> int:
+    """Bytes that this process takes, and those free besides: more cannot be had."""
+    import psutil
+
+    return int(psutil.Process().memory_info().vms) + free_memory()
+
+
 def peak_memory() -> int:
     """Most memory that this process has held so far [byte]."""
     if sys.platform == "win32":
+        import psutil
+
         return int(psutil.Process().memory_info().peak_wset)
     import resource
 
@@ -65,7 +86,7 @@ def memory_bounded() -> Iterator[None]:
     import resource
 
     _, hard = before = resource.getrlimit(resource.RLIMIT_AS)
-    bound = psutil.Process().memory_info().vms + psutil.virtual_memory().available
+    bound = address_space()
     if before[0] != resource.RLIM_INFINITY:
         bound = min(bound, before[0])
     resource.setrlimit(resource.RLIMIT_AS, (bound, hard))

@@ -18,6 +18,7 @@ from pipeline.capture.trajectories import CAPTURED, TIMED_OUT, Duct, Fates, Pace
 from pipeline.geometry.threads import cores
 from pipeline.line.places import remove
 from pipeline.line.store import DAMAGE, read_arrays
+from pipeline.machine import cores
 
 BATCH = 500
 """Particles that are followed in one go: the work that a killed run loses at most, per core."""

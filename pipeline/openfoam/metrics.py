@@ -39,8 +39,8 @@ def non_orthogonality(mesh: FaceMesh, shape: Polyhedra) -> Floats:
 def skewness(mesh: FaceMesh, shape: Polyhedra) -> Floats:
     """Offset of f from where d pierces the face, over the face's extent that way, (faces,) array [1].
 
-    The offset is s = (f - C) - (S.(f - C)) / (S.d) d, the extent max(0.2 |d|, max over the corners p of
-    |s.(p - f)| / |s|). On the boundary d is the part of f - C along S, and 0.4 stands for 0.2.
+    The offset is ``s = (f - C) - (S.(f - C)) / (S.d) d``, the extent ``max(0.2 |d|, |s.(p - f)| / |s|)`` over the
+    corners p. On the boundary d is the part of f - C along S, and 0.4 stands for 0.2.
     """
     n = mesh.internal
     to_face = shape.centers - shape.cell_centers[mesh.owner]
@@ -108,7 +108,7 @@ def _sums_of_areas(mesh: FaceMesh, shape: Polyhedra) -> tuple[Floats, Floats]:
 
 
 def determinant(mesh: FaceMesh, shape: Polyhedra) -> Floats:
-    """Give det(sum(S S) / (mean of |S|)^2) / 8 over a cell's internal faces, (cells,) array [1].
+    """Give ``det(sum(S S) / (mean of |S|)^2) / 8`` over a cell's internal faces, (cells,) array [1].
 
     1 for a cube among cubes; 0 where all internal faces lie in two directions, so that no gradient is known. A flat
     mesh has 1 in the sum's place for the direction that it lacks, and a mesh along a line has 1.

@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING
 
 from pipeline.analytics.formulas.slip import knudsen, regime, slip_length
 from pipeline.analytics.models.pressure_models import pressure_model
-from pipeline.geometry.threads import cores
 from pipeline.line import store
 from pipeline.line.places import kept_folder
-from pipeline.machine import peak_memory
+from pipeline.machine import cores, peak_memory
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.exports import OpenFoamCase

@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import numpy as np
-import psutil
 
 from pipeline.errors import StageError
+from pipeline.machine import free_memory
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.fibers import Mat
 from pipeline.surface.settings import SurfaceSettings
@@ -43,7 +43,7 @@ def refuse_too_large(mat: Mat, settings: SurfaceSettings) -> float:
         If they would not fit into the machine's free memory, with the fibers that most of them belong to.
     """
     each = expected_triangles(mat, settings)
-    total, free = float(each.sum()), float(psutil.virtual_memory().available)
+    total, free = float(each.sum()), float(free_memory())
     needed = total * MEMORY_PER_TRIANGLE
     if needed > free:
         most = int(np.argmax(each))

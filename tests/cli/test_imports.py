@@ -16,7 +16,7 @@ HEAVY = ("numba", "scipy", "pint", "jinja2", "matplotlib", "pyvista", "vtkmodule
 def loaded(words: tuple[str, ...], folder: Path) -> set[str]:
     program = (
         "import contextlib, io, json, sys\n"
-        "from pipeline.cli.app import main\n"
+        "from pipeline.cli.entry import main\n"
         "with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(SystemExit):\n"
         f"    sys.argv[1:] = {list(words)!r}\n"
         "    main()\n"
@@ -30,8 +30,8 @@ def loaded(words: tuple[str, ...], folder: Path) -> set[str]:
     ("words", "spared"),
     [
         (("--help",), (*HEAVY, "numpy", "pydantic")),
-        (("schema",), HEAVY),
-        (NUMBERS, HEAVY),
+        (("schema",), (*HEAVY, "psutil")),
+        (NUMBERS, (*HEAVY, "psutil")),
         # a mat is grown by compiled loops; numba itself loads a part of scipy
         (("run", "default", "--until", "mat", "--quiet"), tuple(set(HEAVY) - {"numba", "scipy"})),
     ],

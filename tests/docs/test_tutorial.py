@@ -14,7 +14,7 @@ from tests.cli.conftest import fibertwin as fibertwin  # the fixture
 
 DOCS = Path(__file__).parents[2] / "docs"
 TUTORIAL = (DOCS / "tutorial.md").read_text(encoding="utf-8")
-PAGES = ("tutorial.md", "cluster.md")
+PAGES = ("tutorial.md", "cluster.md", "questions.md")
 
 
 def commands(page: str) -> list[list[str]]:

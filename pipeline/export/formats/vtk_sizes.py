@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import IO
 from xml.parsers import expat
 
-import psutil
-
+from pipeline.machine import free_memory
 from pipeline.nouns.arrays import require
 
 PER_BYTE = 100
@@ -31,7 +30,7 @@ def refuse_bomb(path: Path, declared: int) -> None:
     ------
     ValueError
     """
-    most = min(max(ALWAYS, PER_BYTE * path.stat().st_size), psutil.virtual_memory().available)
+    most = min(max(ALWAYS, PER_BYTE * path.stat().st_size), free_memory())
     require(
         declared <= most,
         f"it says that it holds {declared} bytes, where {most} bytes of memory are the most that it may take",
@@ -66,7 +65,7 @@ def check_legacy(path: Path) -> None:
             for size in sizes:
                 grid *= size
             require(
-                grid * PER_CELL <= psutil.virtual_memory().available,
+                grid * PER_CELL <= free_memory(),
                 f"its grid of {grid} points needs more memory than there is",
             )
         else:
@@ -111,7 +110,7 @@ class _Scan:
             f"it is VTK's {self.kind[:40]}, not a mesh: {_INSTEAD}" if self.kind else "it is no VTKFile",
         )
         refuse_bomb(self.path, self.bytes)
-        memory = psutil.virtual_memory().available
+        memory = free_memory()
         require(self.cells * PER_CELL <= memory, f"its {self.cells} cells need more memory than there is")
 
     def _entity(self, *about: object) -> None:
