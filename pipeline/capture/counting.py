@@ -15,7 +15,6 @@ from pipeline.capture.intervals import share_interval
 from pipeline.capture.langevin import Motion
 from pipeline.capture.starts import starts
 from pipeline.capture.trajectories import CAPTURED, TIMED_OUT, Duct, Fates, Pace, tracked
-from pipeline.geometry.threads import cores
 from pipeline.line.places import remove
 from pipeline.line.store import DAMAGE, read_arrays
 from pipeline.machine import cores

@@ -4,4 +4,5 @@
 
 from pipeline.cli.entry import main
 
-main()
+if __name__ == "__main__":
+    main()

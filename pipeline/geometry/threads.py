@@ -2,19 +2,15 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+
+from pipeline.machine import cores
 
 _LEAST = 20_000
 """Rows that are worth a thread."""
 _PARTS = 4
 """Parts for each core: one that takes longer than the others does not leave them idle."""
-
-
-def cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def in_parts(work: Callable[[int, int], object], count: int, least: int = _LEAST) -> None:
