@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from pipeline.geometry.compiled import compiled
+from pipeline.geometry.compiled import compiled, compiled_for_threads
 from pipeline.geometry.cylinders import away, distance, table
+from pipeline.geometry.threads import in_parts
 from pipeline.geometry.triangles import Floats, Ints
 
 Bools = npt.NDArray[np.bool_]
@@ -102,21 +103,19 @@ def nearest(x: float, y: float, z: float, field: Field) -> tuple[float, int]:
     return best, which
 
 
-@compiled
-def _at(points: Floats, field: Field) -> tuple[Floats, Ints]:
-    found, which = np.empty(len(points)), np.empty(len(points), np.int64)
-    for n in range(len(points)):
+@compiled_for_threads
+def _at(points: Floats, field: Field, found: Floats, which: Ints, begin: int, end: int) -> None:
+    for n in range(begin, end):
         found[n], which[n] = nearest(points[n, 0], points[n, 1], points[n, 2], field)
-    return found, which
 
 
-@compiled
-def _on_surface(points: Floats, free: Floats, most: Floats, field: Field) -> tuple[Floats, Bools]:
+@compiled_for_threads
+def _on_surface(
+    points: Floats, free: Floats, most: Floats, field: Field, result: Floats, done: Bools, begin: int, end: int
+) -> None:
     """Move points onto the surface along the gradient, or leave them."""
     pieces, flat = field[0], field[1]
-    result = points.copy()
-    done = np.zeros(len(points), np.bool_)
-    for n in range(len(points)):
+    for n in range(begin, end):
         x, y, z = points[n, 0], points[n, 1], points[n, 2]
         for _ in range(_NEWTON):
             value, k = nearest(x, y, z, field)
@@ -138,14 +137,12 @@ def _on_surface(points: Floats, free: Floats, most: Floats, field: Field) -> tup
                 break
         if done[n]:
             result[n, 0], result[n, 1], result[n, 2] = x, y, z
-    return result, done
 
 
-@compiled
-def _crossings(outside: Floats, inside: Floats, field: Field) -> Floats:
+@compiled_for_threads
+def _crossings(outside: Floats, inside: Floats, field: Field, result: Floats, begin: int, end: int) -> None:
     pieces = field[0]
-    result = np.empty_like(outside)
-    for n in range(len(outside)):
+    for n in range(begin, end):
         ax, ay, az = outside[n, 0], outside[n, 1], outside[n, 2]
         lx, ly, lz = inside[n, 0] - ax, inside[n, 1] - ay, inside[n, 2] - az
         a, b, share = 0.0, 1.0, 0.5
@@ -164,7 +161,6 @@ def _crossings(outside: Floats, inside: Floats, field: Field) -> Floats:
             else:
                 b, fb = share, value
         result[n, 0], result[n, 1], result[n, 2] = ax + share * lx, ay + share * ly, az + share * lz
-    return result
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -221,7 +217,8 @@ class FiberDistance:
 
     def with_piece(self, points: Floats) -> tuple[Floats, Ints]:
         """Distance at each point, (n,) array, and the piece it is the distance to, -1 beyond reach."""
-        found, piece = _at(points, self.field)
+        found, piece = np.empty(len(points)), np.empty(len(points), np.int64)
+        in_parts(lambda begin, end: _at(points, self.field, found, piece, begin, end), len(points))
         return found, piece
 
     def on_surface(self, points: Floats, free: Floats, most: Floats) -> tuple[Floats, Bools]:
@@ -241,12 +238,14 @@ class FiberDistance:
         done : (n,) bool array
             Which lie on the surface now.
         """
-        moved, done = _on_surface(points, free, most, self.field)
+        moved, done = points.copy(), np.zeros(len(points), np.bool_)
+        in_parts(lambda begin, end: _on_surface(points, free, most, self.field, moved, done, begin, end), len(points))
         return moved, done
 
     def crossings(self, outside: Floats, inside: Floats) -> Floats:
         """Where the lines from points outside to points inside a fiber meet its surface, (n, 3) array."""
-        found: Floats = _crossings(outside, inside, self.field)
+        found = np.empty_like(outside)
+        in_parts(lambda begin, end: _crossings(outside, inside, self.field, found, begin, end), len(outside))
         return found
 
 

@@ -9,11 +9,15 @@ from pathlib import Path
 import pytest
 
 from pipeline.case import Case, override, validate
-from pipeline.errors import CaseError
+from pipeline.enclosure.duct import enclose
+from pipeline.errors import CaseError, StageError
+from pipeline.mat.generate import generate
 from pipeline.mesh.engines.ftetwild.engine import TetwildSettings
 from pipeline.mesh.engines.lattice.engine import LatticeSettings
 from pipeline.mesh.engines.registry import DEFAULT, ENGINES
+from pipeline.mesh.fill import fill
 from pipeline.mesh.settings import TetmeshSettings
+from pipeline.surface.union import unite
 
 SMOKE = tomllib.loads((Path(__file__).parents[2] / "cases/smoke.toml").read_text())
 OWN_KEYS = sorted((name, key) for name, engine in ENGINES.items() for key in engine.settings.model_fields)
@@ -84,3 +88,10 @@ def test_every_engine_says_what_it_is_and_the_default_is_one() -> None:
     assert DEFAULT in ENGINES
     description = TetmeshSettings.model_fields["engine"].description or ""
     assert all(engine.meaning in description for engine in ENGINES.values())
+
+
+def test_the_lattice_ends_at_its_limit_of_time_and_says_how_to_raise_it() -> None:
+    smoke = case("tetmesh.lattice.time_limit=1 us")
+    domain = enclose(unite(generate(smoke.mat), smoke.surface), smoke.enclosure)
+    with pytest.raises(StageError, match=r"after 1e-06 s, the limit, while .*raise tetmesh\.lattice\.time_limit"):
+        fill(domain, smoke.tetmesh)

@@ -51,7 +51,7 @@ def finished(
     filled, faulty = 0.0, 0
     for turn in range(_ROUNDS):
         progress("repairing the worst cells", 0.6 + 0.15 * turn)
-        mesh, faulty, air = repaired(mesh)
+        mesh, faulty, air = repaired(mesh, progress)
         filled += air
         progress("moving the walls onto the fibers", 0.7 + 0.15 * turn)
         mesh = on_fibers(mesh)

@@ -12,6 +12,7 @@ from pipeline.mesh.improve.split import split_corners, split_longest
 from pipeline.mesh.working_mesh import WorkingMesh
 from pipeline.nouns.arrays import Bools
 from pipeline.nouns.patches import DUCT
+from pipeline.progress import Progress, silent
 
 _FILLINGS = 8  # rounds of smoothing and filling crevices
 _PATIENCE = 3  # rounds before cells that cannot be mended are filled though a vertex of theirs could move
@@ -20,12 +21,13 @@ _PASSES = 8  # over the whole mesh: what is filled may leave corners elsewhere
 _NONE = np.empty(0, np.int64)
 
 
-def repaired(mesh: WorkingMesh) -> tuple[WorkingMesh, int, float]:
+def repaired(mesh: WorkingMesh, progress: Progress = silent) -> tuple[WorkingMesh, int, float]:
     """Split, smooth and fill until no cell is faulty or nothing helps.
 
     Parameters
     ----------
     mesh : WorkingMesh
+    progress : Progress
 
     Returns
     -------
@@ -47,6 +49,7 @@ def repaired(mesh: WorkingMesh) -> tuple[WorkingMesh, int, float]:
         near = faulty | (mesh.boundary_faces() > 1)
         if not near.any():
             break
+        progress(f"repairing what is left around {int(near.sum()):,} cells")
         for _ in range(_RINGS):
             near = ring(mesh.tets, near, len(mesh.points))
         part = mesh.part(np.flatnonzero(near))

@@ -94,13 +94,12 @@ def _with_neighbors(mesh: WorkingMesh, cells: Bools) -> Ints:
 def _own_walls(points: Floats, walls: Ints, distance: "FiberDistance") -> Bools:
     """Tell which walls lie on one fiber with all their corners, and their middles nearest to it."""
     pieces, fiber_of = distance.field[0], distance.field[2]
-    corners = points[walls]
-    off, piece = distance.with_piece(corners.reshape(-1, 3))
-    piece_of = np.where(piece >= 0, piece, 0).reshape(-1, 3)
-    near = (np.abs(off).reshape(-1, 3) <= _ON * pieces[piece_of, 7]) & (piece.reshape(-1, 3) >= 0)
-    fiber = fiber_of[piece_of]
-    same = (fiber == fiber[:, :1]).all(axis=1) & near.all(axis=1)
-    _, at_middle = distance.with_piece(corners.mean(axis=1))
+    on_wall, corner = np.unique(walls, return_inverse=True)
+    off, piece = distance.with_piece(points[on_wall])
+    near = (piece >= 0) & (np.abs(off) <= _ON * pieces[piece, 7])
+    fiber = np.where(near, fiber_of[piece], -1)[corner.reshape(-1, 3)]
+    same = (fiber >= 0).all(axis=1) & (fiber == fiber[:, :1]).all(axis=1)
+    _, at_middle = distance.with_piece(points[walls].mean(axis=1))
     same &= (at_middle >= 0) & (fiber_of[np.maximum(at_middle, 0)] == fiber[:, 0])
     return np.asarray(same)
 
