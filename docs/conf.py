@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from sphinx.writers.html5 import HTML5Translator
 
 project = "fibertwin"
-author = "fibertwin developers"
+author = copyright = "fibertwin developers"
 version = release = importlib.metadata.version("fibertwin")
 extensions = [
     "myst_nb",
