@@ -3,13 +3,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from pipeline.errors import StageError
+from pipeline.export.formats.openfoam.case import write_openfoam
 from pipeline.nouns.flow import Flow
+from pipeline.solve.bed import Bed
 from pipeline.solve.regime import refuse_compressed, refuse_regime, reynolds
+from pipeline.solve.running import solve
+from pipeline.solve.settings import OpenFoamSettings
 from pipeline.solve.stokes import inertia, solver
 from pipeline.solve.stokes.convection import Convection
 from pipeline.solve.stokes.creeping import creep
@@ -18,6 +23,7 @@ from pipeline.solve.stokes.system import System
 from tests.openfoam import AIR
 from tests.solve.rows import rows
 from tests.solve.test_stokes import f_star, solved
+from validation.channel import DRAG, LIFT, PRESSURE, past_a_cylinder
 
 RADIUS = 5e-6
 
@@ -101,9 +107,13 @@ def test_below_the_limit_air_creeps_and_above_it_does_not() -> None:
     assert below.pressure_drop_creeping is None
     above, _ = solved(mesh, domain, 0.01, flow=at_reynolds(1.01 * solver.CREEPING_REYNOLDS))
     assert above.inertia
-    # so what a flow just below the limit leaves out is less than the half percent it claims
-    assert above.pressure_drop_creeping is not None
-    assert abs(above.pressure_drop / above.pressure_drop_creeping - 1.0) < 5e-3
+    # so what a flow just below the limit leaves out is less than the half percent it claims, where gaps are wide too
+    sparse, _ = solved(
+        *rows(0.01, around=4, outward=6, radius=RADIUS), 0.01, flow=at_reynolds(1.01 * solver.CREEPING_REYNOLDS)
+    )
+    for found in (above, sparse):
+        assert found.pressure_drop_creeping is not None
+        assert 0.0 < found.pressure_drop / found.pressure_drop_creeping - 1.0 < 5e-3
 
 
 def test_more_air_past_a_row_has_more_drag_than_its_share() -> None:
@@ -159,3 +169,31 @@ def test_a_creeping_flow_that_stalls_says_so_and_what_to_do() -> None:
     system.precondition = lambda x: x  # type: ignore[method-assign]
     with pytest.raises(StageError, match=r"stalls after \d+ iterations .* too flat .* tetmesh.engine"):
         creep(system, 1e-6, 5000, lambda *told: None)
+
+
+def test_drag_lift_and_pressure_of_a_benchmark_with_inertia() -> None:
+    # Schäfer & Turek's cylinder between plates at a Reynolds number of 20, by Nabh's ten digits; on 1,560 cells the
+    # drag is wrong by .1 %, and what is taken from single vertices or is small beside it by some percent
+    run = past_a_cylinder(6)
+    assert run.drag == pytest.approx(DRAG, rel=2e-3)
+    assert run.pressure == pytest.approx(PRESSURE, rel=0.04)
+    assert run.lift == pytest.approx(LIFT, rel=0.08)
+
+
+@pytest.mark.openfoam
+@pytest.mark.slow
+def test_inertia_adds_to_the_drag_what_simplefoam_says_on_the_same_cells(tmp_path: Path) -> None:
+    mesh, domain = rows(0.1, around=8, outward=8, radius=RADIUS)
+    own, others = [], []
+    for number in (0.02, 5.0):
+        flow = at_reynolds(number)
+        solution, _ = solved(mesh, domain, 0.01, flow=flow)
+        own.append(solution.drag / flow.face_velocity)
+        case, work = tmp_path / f"{number:g}", tmp_path / f"{number:g}.work"
+        write_openfoam(mesh.face_mesh(), case, flow)
+        found = solve(
+            case, work, flow, Bed(domain.slab.face_area, domain.slab.size[2]), OpenFoamSettings(tolerance=1e-5)
+        )
+        others.append(found.drag / flow.face_velocity)
+    # the cells' own error, some percent of finite volumes, is about the same in both and leaves the ratio
+    assert own[1] / own[0] - 1.0 == pytest.approx(others[1] / others[0] - 1.0, rel=0.1)

@@ -24,7 +24,8 @@ BALANCE = 1e-6
 """Share of the pressure's force by which the forces may miss each other once a flow has settled."""
 LOST = 1e-5
 """Share of the air that may be lost between inlet and outlet once a flow has settled."""
-_WEIGHT = 10.0  # of the divergence beside the forces in what the iterations make small
+DIVERGENCE_WEIGHT = 10.0
+"""Of the divergence beside the forces in what the iterations make small."""
 
 Tell = Callable[[int, float, float], None]
 """Told the iterations, the pressure drop and its error."""
@@ -113,7 +114,7 @@ class System:
         self.stiff, self.bent = self.matrices.stiff, np.empty((0, 3, 3), np.float32)
         force, divergence = self.forces(conditions.given, np.zeros(self.matrices.vertices))
         conditions.project(force)
-        self.right = np.concatenate([-force.ravel(), -_WEIGHT * divergence])
+        self.right = np.concatenate([-force.ravel(), -DIVERGENCE_WEIGHT * divergence])
         self.scale = float(np.linalg.norm(self.right))
 
     def carry(self, convection: Convection) -> None:
@@ -170,7 +171,7 @@ class System:
         if self.conditions.friction is not None:
             force += (self.conditions.friction @ x[: self.split]).reshape(-1, 3)
         self.conditions.project(force)
-        return np.concatenate([force.ravel(), _WEIGHT * divergence])
+        return np.concatenate([force.ravel(), DIVERGENCE_WEIGHT * divergence])
 
     def rest(self, x: Floats) -> Floats:
         """Give what is left of the equations at an iterate."""
@@ -183,7 +184,7 @@ class System:
     def precondition(self, x: Floats) -> Floats:
         """Block-triangular: the pressure by its mass, then the velocity by a cycle of multigrid."""
         m = self.matrices
-        pressure = -self.scale_pressure * x[self.split :] / _WEIGHT
+        pressure = -self.scale_pressure * x[self.split :] / DIVERGENCE_WEIGHT
         force = np.zeros((m.unknowns, 3))
         self._add_gradient(self.div, -pressure, force)
         force += x[: self.split].reshape(-1, 3)
@@ -215,7 +216,7 @@ class System:
         # where air slips, what it may not cross changes the gradient
         same = self.conditions.through is None
         rest = -self._projected(force.copy(), divergence, x) if same else self.rest(x)
-        rest[self.split :] /= _WEIGHT
+        rest[self.split :] /= DIVERGENCE_WEIGHT
         inlet, drag = float(force[self.entrance, 2].sum()), -float(force[self.wall, 2].sum())
         gained = 0.0 if self.convection is None else self.convection.flux(velocity)
         # the pressure's functions sum to 1: the sum of their residuals is the air that is lost
