@@ -223,6 +223,7 @@ def quality(
 def predict(
     source: Path | None = None,
     *,
+    from_: Annotated[tuple[Path, ...], Parameter(name="--from", negative="", consume_multiple=False)] = (),
     solidity: str | None = None,
     thickness: str | None = None,
     fiber_diameter: str | None = None,
@@ -241,6 +242,9 @@ def predict(
     ----------
     source
         A case file, whose mat is grown, or the folder of a run; options below change what it says.
+    from_
+        The folder of a solved run: a slab of a medium that is as thick as ``--thickness`` says. Its pressure drop is
+        scaled, with an interval, and what passed it of particles too. May be repeated for slabs of other seeds.
     solidity
         Fiber volume over mat volume: ``9.5 %`` or 0.095.
     thickness
@@ -265,7 +269,7 @@ def predict(
     plot
         Draw efficiency, figure of merit and pressure drop into this file (svg, png or pdf).
     """
-    from pipeline.cli.predicting import predict_filter
+    from pipeline.cli.predicting import predict_filter, predict_thick
 
     texts = {
         "solidity": solidity,
@@ -278,12 +282,13 @@ def predict(
         "preset": preset,
         "pressure_model": pressure_model,
     }
-    predict_filter(
-        found(source) if source else None,
-        {name: text for name, text in texts.items() if text is not None},
-        as_json,
-        plot,
-    )
+    given = {name: text for name, text in texts.items() if text is not None}
+    if from_:
+        if source is not None or plot is not None:
+            raise CaseError("--from takes the place of a case, and draws nothing: leave the case and --plot out")
+        predict_thick(from_, given, as_json)
+        return
+    predict_filter(found(source) if source else None, given, as_json, plot)
 
 
 @app.command

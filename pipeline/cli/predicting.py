@@ -13,8 +13,9 @@ from rich.console import Console
 from pipeline.analytics.models.prediction import filter_of_comparison, filter_of_mat, predict
 from pipeline.analytics.options import read_options
 from pipeline.analytics.settings import FilterSettings, FlowSettings
-from pipeline.analytics.tables.rows import prediction_tables
+from pipeline.analytics.tables.rows import prediction_tables, thick_tables
 from pipeline.cli.tables import plain_table
+from pipeline.errors import CaseError, StageError
 from pipeline.line.places import disk_trouble_explained
 
 
@@ -34,6 +35,43 @@ def predict_filter(source: Path | None, given: Mapping[str, str], as_json: bool,
         return
     out = Console()
     for table in prediction_tables(prediction):
+        out.print(plain_table(table.title, table.columns, table.rows))
+
+
+def predict_thick(folders: tuple[Path, ...], given: Mapping[str, str], as_json: bool) -> None:
+    """Print what solved slabs say of a thick medium of theirs."""
+    from pipeline.analytics.models.thick import slab_of, thicken
+    from pipeline.line.run import Run
+    from pipeline.nouns.capture import Capture
+    from pipeline.nouns.fibers import Mat
+    from pipeline.nouns.flow import Solution
+
+    foreign = sorted(set(given) - {"thickness", "face_velocity"})
+    if foreign:
+        names = ", ".join(f"--{name.replace('_', '-')}" for name in foreign)
+        raise CaseError(f"--from scales what was solved: {names} would change it; solve a slab that has it")
+    if "thickness" not in given:
+        raise CaseError('--from needs the thickness of the medium: --thickness "0.4 mm"')
+    runs = [Run.opened(folder) for folder in folders]
+    slabs = []
+    for folder, run in zip(folders, runs, strict=True):
+        solution = run.get(Solution)
+        if solution is None:
+            raise StageError(f"{folder} is not solved; fibertwin solve {folder}")
+        slabs.append(slab_of(run.read(Mat), solution))
+    solved = runs[0].case.flow
+    for folder, run in zip(folders[1:], runs[1:], strict=True):
+        if run.case.flow != solved:
+            raise CaseError(f"{folder} was solved with another [flow] than {folders[0]}: the slabs are of one medium")
+    typed = {"solidity": "0.1", "fiber_diameter": "1 um", "thickness": given["thickness"]}
+    medium, flow = read_options({**typed, **{k: v for k, v in given.items() if k == "face_velocity"}}, flow=solved)
+    ratio = flow.face_velocity / solved.face_velocity
+    found = thicken(slabs, medium.thickness, flow.face_velocity, ratio, runs[0].get(Capture))
+    if as_json:
+        sys.stdout.write(json.dumps(dataclasses.asdict(found), indent=2, allow_nan=False) + "\n")
+        return
+    out = Console()
+    for table in thick_tables(found):
         out.print(plain_table(table.title, table.columns, table.rows))
 
 

@@ -9,11 +9,16 @@ from pipeline.analytics.formulas.merit import HEPA_EFFICIENCY, HEPA_PRESSURE_DRO
 from pipeline.analytics.models.comparison import REFERENCE
 from pipeline.analytics.models.prediction import Prediction
 from pipeline.analytics.models.pressure_models import MODELS
+from pipeline.analytics.models.thick import ThickMedium
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.section import Table
 
 _TOLD_BY_PENETRATION = 0.99
 _LEAST_PENETRATION = 1e-6  # percent; below, digits of the efficiency are nines only
+
+
+_NOTHING = 1e-9
+"""Penetration below which a number would say more than is known."""
 
 
 def length(value: float) -> str:
@@ -135,6 +140,42 @@ def _hepa(p: Prediction) -> str:
     if drop is None or drop > HEPA_PRESSURE_DROP:
         broken.append(f"pressure drop above {HEPA_PRESSURE_DROP:g} Pa")
     return f"fails, {' and '.join(broken)}: {found}"
+
+
+def thick_tables(medium: ThickMedium) -> tuple[Table, ...]:
+    """Lay a scaled slab out as tables: its drop with its interval, what the interval is made of, and what passes.
+
+    Parameters
+    ----------
+    medium : ThickMedium
+
+    Returns
+    -------
+    tuple of Table
+    """
+    m = medium
+    slabs = "a slab" if m.slabs == 1 else f"{m.slabs} slabs"
+    rows = (
+        ("thickness", f"{length(m.thickness)}, from {slabs} of {length(m.slab_thickness)}"),
+        ("face velocity", f"{100.0 * m.face_velocity:.4g} cm/s"),
+        ("pressure drop", f"{pascal(m.pressure_drop)} Pa, {pascal(m.low)} to {pascal(m.high)} Pa"),
+        ("in proportion to thickness it would be", f"{pascal(m.by_proportion)} Pa"),
+    )
+    shares = tuple((each.name, f"±{each.half_width / m.pressure_drop:.1%}", each.source) for each in m.shares)
+    if not any(each.name == "another piece of the medium" for each in m.shares):
+        shares += (("another piece of the medium", "not known", "give several runs of other seeds: --from A --from B"),)
+    found = [Table("Thick medium", ("", ""), rows), Table("Its interval", ("part", "of it", "from"), shares)]
+    if m.particle_diameter:
+        each = zip(m.particle_diameter, m.penetration, m.penetration_low, m.penetration_high, strict=True)
+        passing = tuple(
+            (length(size), _passing(value), f"{_passing(low)} to {_passing(high)}") for size, value, low, high in each
+        )
+        found.append(Table("What passes", ("particle", "penetration", "95 % of the slab's counts"), passing))
+    return tuple(found)
+
+
+def _passing(penetration: float) -> str:
+    return f"{100.0 * penetration:.3g}%" if penetration >= _NOTHING else f"below {100.0 * _NOTHING:g}%"
 
 
 def comparison_tables(comparison: Comparison) -> tuple[Table, ...]:
