@@ -7,10 +7,8 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from pipeline.line.places import MANIFEST
-from pipeline.line.store import file_digest, read_json, write_json
+from pipeline.line.store import LARGEST_INTEGER, file_digest, read_json, write_json
 from pipeline.reading import open_file
-
-_LARGEST_INTEGER = 2**63 - 1
 
 
 def read_manifest(stage: Path) -> dict[str, Any] | None:
@@ -60,7 +58,7 @@ def _is_table_of_texts(found: Any) -> bool:
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= _LARGEST_INTEGER
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= LARGEST_INTEGER
 
 
 def _is_count(value: Any) -> bool:

@@ -28,6 +28,7 @@ T = TypeVar("T")
 CASE = "case.json"
 """File of a run's folder that holds its case, every setting in SI."""
 
+LARGEST_INTEGER = 2**63 - 1
 _LARGEST_JSON = 500_000_000  # bytes; the measures of a million fibers take a fifth of that
 _LONGEST_REASON = 2000  # characters of what a library says about a damaged file
 DAMAGE = (
@@ -64,14 +65,18 @@ def _plain(thing: object) -> object:
 
 
 def read_json(path: Path) -> Any:
-    """Read JSON that a stage wrote; not a number and infinity, which none writes, are refused as damage is.
+    """Read JSON that a stage wrote; what none writes is refused as damage is: infinity, integers beyond 64 bits.
 
     Raises
     ------
     OSError, ValueError, RecursionError
         If the file is not there, is a link, or is damaged.
     """
-    return json.loads(read_bytes(path, _LARGEST_JSON, links=False), parse_constant=_refused, parse_float=_finite)
+    return _json(read_bytes(path, _LARGEST_JSON, links=False))
+
+
+def _json(content: str | bytes) -> Any:
+    return json.loads(content, parse_constant=_refused, parse_float=_finite, parse_int=_bounded)
 
 
 def _refused(text: str) -> float:
@@ -81,6 +86,13 @@ def _refused(text: str) -> float:
 def _finite(text: str) -> float:
     value = float(text)
     return value if math.isfinite(value) else _refused(text)
+
+
+def _bounded(text: str) -> int:
+    value = int(text)
+    if abs(value) > LARGEST_INTEGER:
+        raise ValueError(f"an integer of {len(text)} digits has more than 64 bits")
+    return value
 
 
 def load_json(kind: type[T], path: Path) -> T:
@@ -95,7 +107,9 @@ def load_json(kind: type[T], path: Path) -> T:
 
     try:
         read_json(path)
-        return TypeAdapter(kind).validate_json(read_bytes(path, _LARGEST_JSON, links=False))
+        # nouns are read strictly, or the text "NaN" would be a number; a case has texts with units
+        content = read_bytes(path, _LARGEST_JSON, links=False)
+        return TypeAdapter(kind).validate_json(content, strict=dataclasses.is_dataclass(kind))
     except DAMAGE as problem:
         raise _unreadable(path, problem) from problem
 
@@ -145,7 +159,7 @@ def load(kind: type[T], path: Path) -> T:
     """
     try:
         found = read_arrays(path)
-        rest = json.loads(str(found.pop("rest")), parse_constant=_refused, parse_float=_finite)
+        rest = _json(str(found.pop("rest")))
         return _made(kind, found, rest)
     except DAMAGE as problem:
         raise _unreadable(path, problem) from problem
@@ -167,7 +181,7 @@ def _made(kind: type[T], found: dict[str, Any], rest: dict[str, Any]) -> T:
             }
             values[item.name] = expected(**parts)
         else:
-            values[item.name] = TypeAdapter(expected).validate_python(rest.pop(item.name))
+            values[item.name] = TypeAdapter(expected).validate_json(json.dumps(rest.pop(item.name)), strict=True)
     if found or rest:
         raise ValueError(f"it holds {', '.join([*found, *rest])} too")
     return kind(**values)

@@ -3,14 +3,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 from dataclasses import dataclass
-from pathlib import Path
 
 from pipeline.nouns.section import Table
-from pipeline.reading import read_bytes
 
 RESULT = "convergence.json"
 """File of a run's folder that holds what `fibertwin converge` found."""
-_LARGEST = 1_000_000  # bytes; a few numbers and notes take some thousands
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,13 +134,3 @@ def convergence_tables(found: ConvergedDrop) -> tuple[Table, Table]:
         Table("meshes", ("edge", "cells", "Pa", "Pa, no slip", "Pa, slip", "s"), meshes),
         Table("pressure drop and what moves it", ("", ""), tuple(rows)),
     )
-
-
-def read_convergence(folder: Path) -> ConvergedDrop | None:
-    """Read what `fibertwin converge` left in a run's folder; None where it left nothing that can be read."""
-    from pydantic import TypeAdapter, ValidationError
-
-    try:
-        return TypeAdapter(ConvergedDrop).validate_json(read_bytes(folder / RESULT, _LARGEST, links=False))
-    except (OSError, ValidationError):
-        return None

@@ -71,11 +71,14 @@ class FlowField:
         )
         require(self.cells.ndim == 2 and self.cells.shape[1] == 10, "a tetrahedron has not ten nodes")
         require(all_within(self.cells, len(self.positions)), "a tetrahedron has a node that is not there")
+        require(self.positions.ndim == 2 and self.positions.shape[1] == 3, "a node has not three coordinates")
         require(self.velocity.shape == self.positions.shape, "not every node has a velocity")
+        vertices = self.pressure.ndim == 1 and all_within(self.cells[:, :4], len(self.pressure))
+        require(vertices, "not every vertex of a tetrahedron has a pressure")
         require(self.curved.shape == (len(self.cells),), "not every tetrahedron says whether it is curved")
         require(self.slip_length >= 0.0, "the slip length is below 0")
-        finite = np.isfinite(self.velocity).all() and np.isfinite(self.pressure).all()
-        require(bool(finite), "a velocity or a pressure is not finite")
+        finite = all(bool(np.isfinite(each).all()) for each in (self.positions, self.velocity, self.pressure))
+        require(finite, "a position, a velocity or a pressure is not finite")
 
     def place(self, cell: Ints, barycentric: Floats) -> Floats:
         """Where barycentric coordinates of tetrahedra are, (k, 3) array [m]; `cell` is (k,), `barycentric` (k, 4)."""

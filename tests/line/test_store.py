@@ -14,6 +14,7 @@ from pipeline.line import places, store
 from pipeline.line.manifest import finished, write_manifest
 from pipeline.line.places import MANIFEST
 from pipeline.nouns.fibers import Mat
+from pipeline.nouns.mesh_measures import MeshingCost
 from tests.surface.mats import CROSSING
 
 
@@ -124,3 +125,15 @@ def test_json_holds_arrays_and_dataclasses_and_no_not_a_number(tmp_path: Path) -
     assert content["box"]["upper"] == list(CROSSING.slab.upper)
     with pytest.raises(ValueError, match="not JSON compliant"):
         store.write_json(tmp_path / "b.json", {"x": float("nan")})
+
+
+@pytest.mark.parametrize(
+    "value", ["NaN", "Infinity", '"NaN"', '"0.5"', "1e999", "1" + "0" * 400, "true", "null", "[1]"]
+)
+def test_a_number_of_a_noun_is_a_number(value: str, tmp_path: Path) -> None:
+    # pydantic would take texts for numbers, and an integer of 400 digits for infinity
+    (tmp_path / "cost.json").write_text(f'{{"seconds": {value}, "peak_memory": 1}}')
+    with pytest.raises(StageError, match=r"(?s)cannot read .*cost\.json: .*; run the stage again with --force"):
+        store.load_json(MeshingCost, tmp_path / "cost.json")
+    (tmp_path / "cost.json").write_text('{"seconds": 2, "peak_memory": 1}')
+    assert store.load_json(MeshingCost, tmp_path / "cost.json") == MeshingCost(2.0, 1)

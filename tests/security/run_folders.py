@@ -6,10 +6,13 @@ nor remove anything outside.
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import dataclasses
 import json
 import math
 import os
 import shutil
+import types
+import typing
 import zipfile
 from collections.abc import Callable
 from functools import cache
@@ -26,11 +29,14 @@ from pipeline.errors import StageError
 from pipeline.line import store
 from pipeline.line.manifest import read_manifest
 from pipeline.line.places import MANIFEST, remove
-from pipeline.line.run import Run, run
+from pipeline.line.run import LINE, Run, run
+from pipeline.nouns.convergence import ConvergedDrop
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.fibers import Mat
+from pipeline.nouns.flow_field import EDGES, FlowField
 from pipeline.nouns.mesh import FaceMesh
-from pipeline.nouns.quality import QualityReport
+from pipeline.nouns.micrographs import Micrographs
+from pipeline.nouns.quality import CellFields
 from pipeline.nouns.surface import Surface
 from pipeline.quality.judge import judge
 from pipeline.surface.settings import SurfaceSettings
@@ -73,7 +79,10 @@ def nouns() -> dict[str, tuple[type, bytes]]:
         "surface.npz": surface,
         "domain.npz": enclose(surface, EnclosureSettings()),
         "mesh.npz": duct((2, 2, 3)).face_mesh(),
+        "fields.npz": CellFields(("determinant",), np.zeros((1, 12))),
+        "flow.npz": _flow(),
     }
+    assert {type(thing) for thing in things.values()} == set(_left_as(".npz")), "a noun is not looked at"
     found: dict[str, tuple[type, bytes]] = {}
     for name, thing in things.items():
         store.save(thing, folder() / name)
@@ -83,12 +92,58 @@ def nouns() -> dict[str, tuple[type, bytes]]:
     return found
 
 
+def _flow() -> FlowField:
+    corners = np.concatenate([np.zeros((1, 3)), np.eye(3)])
+    nodes = np.concatenate([corners, corners[EDGES].mean(axis=1)])
+    return FlowField(nodes, np.arange(10)[None], np.ones((10, 3)), np.ones(4), np.array([False]), 1e-7)
+
+
+def _left_as(suffix: str) -> list[type]:
+    """Give the nouns that the stages of the line leave in files of a kind."""
+    return [noun for stage in LINE for noun, place in stage.gives.items() if place.endswith(suffix)]
+
+
+@cache
+def json_nouns() -> dict[str, tuple[type, bytes]]:
+    """Give a valid file of each noun that is left as JSON, made from its types alone."""
+    found = {}
+    for kind in (*_left_as(".json"), ConvergedDrop):
+        path = folder() / "noun.json"
+        store.write_json(path, _example(kind))
+        found[kind.__name__] = (kind, path.read_bytes())
+    return found
+
+
+def _example(kind: Any) -> Any:
+    parts = typing.get_args(kind)
+    origin = typing.get_origin(kind)
+    if dataclasses.is_dataclass(kind):
+        hints = typing.get_type_hints(kind)
+        if kind is Micrographs:
+            # only its own two names are taken
+            return Micrographs("twin.png", None, 1.0, 1.0, 1.0)
+        return kind(**{item.name: _example(hints[item.name]) for item in dataclasses.fields(kind)})  # type: ignore[operator]
+    if origin in (types.UnionType, typing.Union):
+        return None if type(None) in parts else _example(parts[0])
+    if origin is tuple:
+        return (_example(parts[0]),) * 2 if Ellipsis in parts else tuple(map(_example, parts))
+    if origin is dict:
+        return {"a": _example(parts[1])}
+    # none of no particles have no end
+    return {float: 0.5, int: 0, bool: True, str: "a"}[kind]
+
+
 # what every noun answers once it is there
 _ASKED: dict[type, Callable[[Any], object]] = {
     Mat: lambda mat: (mat.segment_lengths(), mat.slab.volume),
     Surface: lambda surface: (surface.volume, surface.solidity),
     FluidDomain: lambda domain: (domain.volume, domain.mean_diameter),
     FaceMesh: lambda mesh: (mesh.volume, judge(mesh)),
+    CellFields: lambda fields: fields.by_name(),
+    FlowField: lambda flow: [
+        ask(np.arange(len(flow.cells)), np.full((len(flow.cells), 4), 0.25))
+        for ask in (flow.place, flow.velocity_at, flow.pressure_at)
+    ],
 }
 
 
@@ -133,7 +188,9 @@ def _other(draw: st.DataObject, array: Any) -> Any:
             return changed
         case "type":
             kind = draw.draw(_KINDS)
-            return np.zeros(array.shape, kind) if kind in ("U3", "S2") else array.astype(kind)
+            return (
+                np.zeros(array.shape, kind) if array.dtype.kind in "US" or kind in ("U3", "S2") else array.astype(kind)
+            )
         case "flat":
             return array.reshape(-1)
         case "deeper":
@@ -190,12 +247,24 @@ def odd_manifest(draw: st.DataObject) -> None:
 
 
 def odd_json(draw: st.DataObject) -> None:
-    """Damage the JSON of a quality report, and what reads it."""
-    path = folder() / "quality.json"
-    store.write_json(path, judge(duct((2, 2, 3)).face_mesh()))
-    path.write_bytes(damaged(draw, path.read_bytes()))
+    """Damage the JSON of a noun, or put something else anywhere into it."""
+    kind, content = json_nouns()[draw.draw(st.sampled_from(sorted(json_nouns())))]
+    path = folder() / "odd.json"
+    if draw.draw(st.booleans()):
+        path.write_bytes(damaged(draw, content))
+    else:
+        whole = json.loads(content)
+        table: Any = whole
+        while True:
+            key = draw.draw(st.sampled_from(sorted(table) if isinstance(table, dict) else range(len(table))))
+            if isinstance(table[key], dict | list) and table[key] and draw.draw(st.booleans()):
+                table = table[key]
+                continue
+            table[key] = draw.draw(_ODD)
+            break
+        path.write_text(json.dumps(whole))
     with refused_or_read():
-        store.write_json(folder() / "again.json", store.load_json(QualityReport, path))
+        store.write_json(folder() / "again.json", store.load_json(kind, path))
 
 
 def _copy() -> Path:
