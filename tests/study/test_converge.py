@@ -12,7 +12,7 @@ from pipeline.case import Case, read_case
 from pipeline.errors import CaseError, StageError
 from pipeline.nouns.convergence import MeshRung, convergence_tables
 from pipeline.progress import Progress, silent
-from pipeline.report.page.flow_sections import read_convergence
+from pipeline.report.page.converged import read_convergence
 from pipeline.study import converge as module
 from pipeline.study.converge import converge
 from tests.cli.conftest import Fibertwin, fibertwin

@@ -10,13 +10,13 @@ from typing import Any
 from pipeline.line.results import Results
 from pipeline.nouns.capture import Capture
 from pipeline.nouns.comparison import Comparison
-from pipeline.nouns.convergence import read_convergence
 from pipeline.nouns.flow import Solution
 from pipeline.nouns.mat_measures import MatMeasures
 from pipeline.nouns.mesh_measures import MeshingCost, TetmeshMeasures
 from pipeline.nouns.quality import QualityReport
 from pipeline.nouns.section import Charts, Columns, Part, Picture, Pictures, Section
 from pipeline.report.page import words
+from pipeline.report.page.converged import read_convergence
 from pipeline.report.page.headline import headline
 from pipeline.report.page.provenance import provenance
 

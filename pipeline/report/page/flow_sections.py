@@ -3,22 +3,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import math
-from pathlib import Path
 
 from pipeline.analytics.models.prediction import filter_of_mat, predict
 from pipeline.analytics.models.single_fiber import PRESETS
 from pipeline.analytics.settings import FilterSettings, FlowSettings
 from pipeline.analytics.tables.rows import comparison_tables, length, prediction_tables
-from pipeline.errors import StageError
-from pipeline.line import store
 from pipeline.line.results import Results
 from pipeline.nouns.comparison import Comparison
-from pipeline.nouns.convergence import RESULT, ConvergedDrop, convergence_tables
+from pipeline.nouns.convergence import ConvergedDrop, convergence_tables
 from pipeline.nouns.fibers import Mat
 from pipeline.nouns.flow import Settling, Solution, SolvingCost
 from pipeline.nouns.mat_measures import MatMeasures
 from pipeline.nouns.section import Charts, Columns, Facts, Part, Picture, Pictures, Section, Table, Text
 from pipeline.report.page import charts, words
+from pipeline.report.page.converged import read_convergence
 from pipeline.report.page.headline import wall_of
 
 _WIDE = 4  # columns of a table from which it takes the width of the page
@@ -180,11 +178,3 @@ def _bend(medium: FilterSettings, flow: FlowSettings) -> str:
         return ""
     place = length(cutoff * medium.fiber_diameter)
     return f"The curves bend at {place}, {cutoff:g} fiber diameters: from there on impaction's J is 2.0, after Hinds."
-
-
-def read_convergence(folder: Path) -> ConvergedDrop | None:
-    """Read what `fibertwin converge` left in a run's folder; None where it left nothing that can be read."""
-    try:
-        return store.load_json(ConvergedDrop, folder / RESULT)
-    except StageError:
-        return None

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from pipeline.line.results import Results
 from pipeline.nouns.comparison import Comparison
-from pipeline.nouns.convergence import ConvergedDrop, read_convergence
+from pipeline.nouns.convergence import ConvergedDrop
 from pipeline.nouns.flow import Solution
+from pipeline.report.page.converged import read_convergence
 
 _TWO = 2.0  # standard deviations
 
