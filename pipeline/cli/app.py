@@ -178,6 +178,37 @@ def converge(
 
 
 @app.command
+def permeability(
+    case: Path,
+    *,
+    out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+    set_: Annotated[tuple[str, ...], Parameter(name=["--set", "-s"], negative="", consume_multiple=False)] = (),
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    quiet: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Solve the flow along x, y and z of a mat: permeability.json with the tensor, and a table.
+
+    In its plane the mat is turned and solved as a case of its own; docs/structure.md tells what that leaves open.
+
+    Parameters
+    ----------
+    case
+        The case file (TOML), or the name of a bundled case.
+    out
+        Folder of the case's own run, which gets the result; ``runs/<name of the case file>`` if left out.
+    set_
+        Override a key of the case file: ``--set mat.seed=7``. May be repeated.
+    as_json
+        Print permeability.json instead of the table.
+    quiet
+        Print nothing but errors.
+    """
+    from pipeline.cli.permeating import permeability_of_case
+
+    permeability_of_case(found(case), out or Path("runs") / case.stem, set_, as_json, quiet)
+
+
+@app.command
 def quality(
     mesh: Path,
     *,

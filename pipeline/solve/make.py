@@ -130,8 +130,6 @@ def _parallel_length(results: "Results", surface: Surface, comparison: Compariso
 def obstacle(results: "Results") -> str | None:
     """Say what keeps the solver from running; None where nothing does."""
     if results.case.solve.engine != "openfoam":
-        if results.case.mat.generator == "surface":
-            return "solve.engine = stokes needs the fibers' axes, and a surface has none; set it to openfoam"
         return None
     if "openfoam" not in results.case.export.formats:
         return "export.formats lacks openfoam, the format of solve.engine = openfoam"

@@ -122,7 +122,7 @@ def test_a_stack_becomes_a_case(
         main()
     told = json.loads(capsys.readouterr().out)
     assert told["solidity"]["surface"] == pytest.approx(told["solidity"]["voxels"], rel=2e-3)
-    # cylinders of 1 um: 4 V / S, less what they share at the crossing
-    assert told["mean_diameter"] == pytest.approx(UM, rel=0.06)
+    # cylinders of 1 um: 4 V / S; where they cross, more of the surface is hidden than of the volume
+    assert told["mean_diameter"] == pytest.approx(UM, rel=0.07)
     case = read_case(Path("a.toml"))
     assert case.mat.generator == "surface"

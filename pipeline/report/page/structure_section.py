@@ -8,7 +8,8 @@ import numpy as np
 from markupsafe import Markup
 
 from pipeline.line.results import Results
-from pipeline.nouns.section import Charts, Columns, Facts, Section, Text
+from pipeline.nouns.permeability import permeability_table, read_permeability
+from pipeline.nouns.section import Charts, Columns, Facts, Part, Section, Text
 from pipeline.nouns.structure import Structure
 from pipeline.report.page.svg import BLUE, GREEN, ORANGE, chart
 from pipeline.structure.tables import structure_rows
@@ -19,9 +20,20 @@ if TYPE_CHECKING:
 
 def structure(content: Results) -> Section | None:
     """Show the sizes of pores and what they let through."""
-    found = content.get(Structure)
-    if found is None:
+    found, permeability = content.get(Structure), read_permeability(content.folder)
+    if found is None and permeability is None:
         return None
+    parts: list[Part] = [] if found is None else [_pores(found)]
+    if permeability is not None:
+        words = (
+            "Darcy's permeability; in its plane the mat was turned and solved as a case of its own, with air before "
+            "and behind it. Beyond its sides a medium goes on as its mirror image, so the tensor is diagonal."
+        )
+        parts += [permeability_table(permeability), Text(words, "soft")]
+    return Section("structure", "Pores", "The air between the fibers", tuple(parts))
+
+
+def _pores(found: Structure) -> Columns:
     drawing = Charts(
         (pore_chart(found),),
         "Volume of air by the largest sphere that fits in and holds it. Bubble point: the largest sphere that passes "
@@ -33,7 +45,7 @@ def structure(content: Results) -> Section | None:
         "medium goes on. Tortuosity: porosity over the relative diffusivity of a gas that the fibers do not take up."
     )
     facts = (Facts(structure_rows(found)), Text(measured, "soft"))
-    return Section("structure", "Pores", "The air between the fibers", (Columns(((facts), (drawing,))),))
+    return Columns((facts, (drawing,)))
 
 
 def pore_chart(found: Structure) -> Markup:

@@ -80,6 +80,8 @@ def curve_walls(
     -------
     Walls
     """
+    if len(pieces) == 0:
+        return _straight_walls(points, nodes, faces, radius)
     # numba takes half a second to load
     from pipeline.geometry.fibers import FiberDistance
 
@@ -109,6 +111,22 @@ def curve_walls(
     fiber, normal, axis = _true_normals(positions[wall], distance, pieces, radius)
     bent_fully = (offset[edge] == wanted).all(axis=1) & near
     return Walls(positions, curved, wall, normal, radius[fiber], axis, int((~bent_fully).sum()), len(edge))
+
+
+def _straight_walls(points: Floats, nodes: Nodes, faces: Ints, radius: Floats) -> Walls:
+    """Leave the walls of a body as the mesh has them: nobody knows its axes, so no place on it has a fiber's normal."""
+    six = nodes.of_triangles(faces)
+    wall, edges = np.unique(six), len(np.unique(six[:, 3:]))
+    return Walls(
+        positions=np.concatenate([points, nodes.middles(points)]),
+        curved=np.zeros(len(nodes.cells), bool),
+        wall=wall,
+        normal=np.zeros((len(wall), 3)),
+        radius=np.full(len(wall), float(radius.mean())),
+        axis=np.zeros((len(wall), 3)),
+        straight=edges,
+        edges=edges,
+    )
 
 
 def _moved_vertices(
