@@ -25,6 +25,10 @@ def by_size(offsets: Ints) -> Iterator[tuple[Ints, Ints]]:
         Where their corners stand.
     """
     sizes = np.diff(offsets)
+    if len(sizes) and sizes.min() == sizes.max():
+        # a mesh of triangles alone: nothing to look for
+        yield np.arange(len(sizes)), offsets[:-1, None] + np.arange(sizes[0])
+        return
     for size in np.unique(sizes):
         faces = np.flatnonzero(sizes == size)
         yield faces, offsets[faces][:, None] + np.arange(size)

@@ -4,11 +4,11 @@
 
 import numpy as np
 
-from pipeline.geometry.compiled import compiled
+from pipeline.geometry.compiled import compiled, compiled_for_threads
 from pipeline.nouns.arrays import Floats, Ints
 
 
-@compiled
+@compiled_for_threads
 def largest_cosines(first: Ints, faces: Ints, signs: Floats, areas: Floats, centers: Floats) -> Floats:
     """Give the largest cosine between a face's normal and the way to the center of another, of each cell.
 
@@ -47,7 +47,7 @@ def largest_cosines(first: Ints, faces: Ints, signs: Floats, areas: Floats, cent
     return result
 
 
-@compiled
+@compiled_for_threads
 def smallest_tets(
     points: Floats,
     corners: Ints,

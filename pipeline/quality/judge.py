@@ -2,13 +2,15 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
 from pipeline.geometry.parts import parts
 from pipeline.geometry.polyhedra import Polyhedra
+from pipeline.machine import cores
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.quality import Metric, QualityReport
@@ -18,6 +20,8 @@ from pipeline.quality.settings import QualitySettings
 
 WORST = 5
 """How many of the worst cells or faces a report names."""
+_LARGE = 100_000  # cells from which threads pay
+_Measured = tuple[Metric | None, Floats | None]
 USELESS_ANGLE = 90.0
 """Non-orthogonality [degree] from which a face passes flux backwards; `checkMesh` fails there."""
 
@@ -78,23 +82,52 @@ def judge(mesh: FaceMesh, settings: QualitySettings | None = None, progress: Pro
     QualityReport
         A metric that the mesh has nothing to measure with (one cell has no internal face) is left out.
     """
+    return judge_with_fields(mesh, settings, progress)[0]
+
+
+def judge_with_fields(
+    mesh: FaceMesh, settings: QualitySettings | None = None, progress: Progress = silent
+) -> tuple[QualityReport, dict[str, Floats]]:
+    """Judge a mesh, and give the values that the report sums up cell by cell: each metric is computed once.
+
+    Parameters
+    ----------
+    mesh, settings, progress
+        As `judge` takes them.
+
+    Returns
+    -------
+    QualityReport
+    fields : dict of (cells,) arrays
+        As `cell_fields` gives them.
+    """
     settings = settings or QualitySettings()
     shape = mesh.polyhedra()
     found: dict[str, Metric] = {}
+    fields = {"volume": shape.volumes}
     reasons, notes = _topology(mesh)
     warnings: list[str] = []
-    for done, (name, definition) in enumerate(_DEFINITIONS.items()):
-        progress(f"quality: {name}", done / len(_DEFINITIONS))
+
+    def measured(name: str) -> tuple[Metric | None, Floats | None]:
+        definition = _DEFINITIONS[name]
         values = definition.compute(mesh, shape)
-        if not len(values):
+        limit = getattr(settings, name, definition.fixed_limit)
+        metric = _summary(name, definition, values, limit, shape) if len(values) else None
+        return metric, _per_cell(mesh, definition, values) if name in QualitySettings.model_fields else None
+
+    for done, (name, (metric, field)) in enumerate(zip(_DEFINITIONS, _by_all_cores(measured, mesh), strict=True)):
+        progress(f"quality: {name}", done / len(_DEFINITIONS))
+        if field is not None:
+            fields[name] = field
+        if metric is None:
             continue
-        metric = _summary(name, definition, values, getattr(settings, name, definition.fixed_limit), shape)
         found[name] = metric
+        definition = _DEFINITIONS[name]
         if metric.over_limit:
             useless = name == "non_orthogonality" and metric.max >= USELESS_ANGLE
             (warnings if definition.mild and not useless else reasons).append(_sentence(metric))
     verdict = "fail" if reasons else "warn" if warnings else "pass"
-    return QualityReport(
+    report = QualityReport(
         cells=mesh.cells,
         points=len(mesh.points),
         faces=mesh.faces,
@@ -106,6 +139,18 @@ def judge(mesh: FaceMesh, settings: QualitySettings | None = None, progress: Pro
         reasons=(*reasons, *warnings),
         notes=tuple(notes),
     )
+    return report, {name: fields[name] for name in ("volume", *QualitySettings.model_fields)}
+
+
+def _by_all_cores(measured: Callable[[str], _Measured], mesh: FaceMesh) -> Iterator[_Measured]:
+    """Measure by every definition, in their order: some at a time where a mesh is large, since numpy lets go."""
+    threads = cores() if mesh.cells >= _LARGE else 1
+    if threads == 1:
+        yield from map(measured, _DEFINITIONS)
+        return
+    # no more than two, for memory's sake: each holds vectors over all faces
+    with ThreadPoolExecutor(max_workers=min(2, threads)) as pool:
+        yield from pool.map(measured, _DEFINITIONS)
 
 
 def measure(mesh: FaceMesh) -> dict[str, Floats]:
@@ -123,13 +168,11 @@ def cell_fields(mesh: FaceMesh) -> dict[str, Floats]:
     -------
     dict of (cells,) arrays
     """
-    shape = mesh.polyhedra()
-    fields = {"volume": shape.volumes}
-    for name in QualitySettings.model_fields:
-        definition = _DEFINITIONS[name]
-        values = definition.compute(mesh, shape)
-        fields[name] = values if definition.where == "cells" else _worst_of_faces(mesh, values, definition.worst_is)
-    return fields
+    return judge_with_fields(mesh)[1]
+
+
+def _per_cell(mesh: FaceMesh, definition: _Definition, values: Floats) -> Floats:
+    return values if definition.where == "cells" else _worst_of_faces(mesh, values, definition.worst_is)
 
 
 def _worst_of_faces(mesh: FaceMesh, values: Floats, worst_is: str) -> Floats:
@@ -197,7 +240,9 @@ def _topology(mesh: FaceMesh) -> tuple[list[str], list[str]]:
     if count > 1:
         smallest = int(np.bincount(part).min())
         notes.append(f"{count} parts of the mesh share no face, the smallest has {smallest} cells")
-    unused = len(mesh.points) - len(np.unique(mesh.corners))
+    used = np.zeros(len(mesh.points), dtype=bool)
+    used[mesh.corners] = True
+    unused = int((~used).sum())
     if unused:
         troubles.append(f"{unused} points belong to no face")
     empty = [patch.name for patch in mesh.patches if not patch.count]

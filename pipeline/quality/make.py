@@ -12,7 +12,7 @@ from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.nouns.quality import CellFields
 from pipeline.progress import Progress
-from pipeline.quality.judge import cell_fields, judge
+from pipeline.quality.judge import judge_with_fields
 from pipeline.quality.walls import with_walls
 
 if TYPE_CHECKING:
@@ -23,10 +23,9 @@ if TYPE_CHECKING:
 def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     """Judge the mesh."""
     mesh, measures = results.read(FaceMesh), results.read(TetmeshMeasures)
-    report = judge(mesh, results.case.quality, progress)
+    report, fields = judge_with_fields(mesh, results.case.quality, progress)
     if measures.fidelity is not None:
         report = with_walls(report, measures.fidelity, results.case.tetmesh.deviation)
     store.write_json(into / "quality.json", report)
-    fields = cell_fields(mesh)
     store.save(CellFields(tuple(fields), np.stack(list(fields.values()))), into / "fields.npz")
     return {"verdict": report.verdict, "max_non_orthogonality": report.metrics["non_orthogonality"].max}
