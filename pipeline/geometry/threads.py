@@ -13,7 +13,7 @@ _PARTS = 4
 """Parts for each core: one that takes longer than the others does not leave them idle."""
 
 
-def in_parts(work: Callable[[int, int], object], count: int, least: int = _LEAST) -> None:
+def in_parts(work: Callable[[int, int], object], count: int, least: int | None = None) -> None:
     """Do the work on all rows, some at a time.
 
     Parameters
@@ -23,10 +23,10 @@ def in_parts(work: Callable[[int, int], object], count: int, least: int = _LEAST
         threads there are.
     count : int
         Number of rows.
-    least : int
-        Rows that are worth a thread.
+    least : int, optional
+        Rows that are worth a thread, where they are more or less work than usual.
     """
-    threads = cores()
+    threads, least = cores(), least or _LEAST
     if threads == 1 or count < 2 * least:
         work(0, count)
         return
