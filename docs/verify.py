@@ -1,13 +1,14 @@
 """Measure what docs/verification.md shows, and write its tables and plots: ``make verify``.
 
-``python docs/verify.py RUNS [PART ...]`` runs some parts only: square, hexagonal, slip, lattices, mats, filters, and
-page, which writes tables and plots from what the others left in docs/verification. Finished runs are reused.
+``python docs/verify.py RUNS [PART ...]`` runs some parts only: arrays, lattices, filters, and page, which writes tables and plots from what the others left in docs/verification. Finished runs are reused.
 """
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import sys
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pipeline.analytics.tables.plots import save_figure
 from pipeline.case import read_case
@@ -17,20 +18,20 @@ from pipeline.pictures.flow import read_flow, slice_figure, streamline_figure
 from pipeline.pictures.panels import write_png
 from pipeline.solve.settings import SolveSettings
 from validation import filters, tables
-from validation.ladder import SLIP, Rung, ladder
+from validation.ladder import CLIMBS, Rung, ladder
 from validation.lattices import LatticeRung, lattices
-from validation.mats import MatRun, mat_runs
-from validation.plots import ladder_figure, mats_figure
+from validation.plots import ladder_figure
 from validation.records import read_records, write_records
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 DOCS = Path(__file__).parent
 PAGE, RECORDS, GALLERY = DOCS / "verification.md", DOCS / "verification", DOCS / "gallery"
 CASES = DOCS.parent / "cases"
 ARRAYS = ("square", "hexagonal")
-SLIP_SOLIDITIES = (0.1,)
 FILTERS = ("default", "figure10_corner")
-MESHERS = ("tetwild", "lattice")
-PARTS = (*ARRAYS, "slip", "lattices", "mats", "filters", "page")
+PARTS = ("arrays", "lattices", "filters", "page")
 
 
 def told(what: str, done: float | None = None) -> None:
@@ -41,22 +42,25 @@ def told(what: str, done: float | None = None) -> None:
 
 def measure(part: str, runs: Path) -> None:
     """Run a part's cases and keep their figures."""
-    if part == "slip":
-        case = read_case(CASES / "verification" / "square.toml")
-        write_records(RECORDS / "slip.csv", ladder(case, runs / "square", SLIP_SOLIDITIES, SLIP, told))
-    elif part == "mats":
-        write_records(
-            RECORDS / "mats.csv", mat_runs(read_case(CASES / "verification" / "mat.toml"), runs / "mats", told)
-        )
+    if part == "arrays":
+        cases = {name: read_case(CASES / "verification" / f"{name}.toml") for name in ARRAYS}
+        jobs = [job for each in CLIMBS for job in ladder(cases[each.arrangement], runs / part, each, told)]
+        collect(part, runs, jobs, Rung)
     elif part == "lattices":
-        rungs = [rung for mesher in MESHERS for rung in lattices(runs / "lattices", mesher, told)]
-        write_records(RECORDS / "lattices.csv", rungs)
-    elif part == "filters":
+        collect(part, runs, list(lattices(runs / part, progress=told)), LatticeRung)
+    else:
         for name in FILTERS:
             solve_filter(name, runs / name)
-    else:
-        case = read_case(CASES / "verification" / f"{part}.toml")
-        write_records(RECORDS / f"{part}.csv", ladder(case, runs / part, tell=told))
+
+
+def collect(part: str, runs: Path, jobs: "Sequence[Callable[[], DataclassInstance]]", kind: type) -> None:
+    """Do jobs one by one, and keep what they found; what an interrupted call of the same runs found is not done again."""
+    kept = runs / f"{part}.csv"
+    found = read_records(kept, kind) if kept.is_file() else []
+    for job in jobs[len(found) :]:
+        found.append(job())
+        write_records(kept, found)
+    write_records(RECORDS / kept.name, found)
 
 
 def solve_filter(name: str, folder: Path) -> None:
@@ -74,26 +78,21 @@ def solve_filter(name: str, folder: Path) -> None:
 def write_page() -> None:
     """Fill the page's tables and draw its plots."""
     page = PAGE.read_text(encoding="utf-8")
-    arrays = [rung for name in ARRAYS for rung in read_records(RECORDS / f"{name}.csv", Rung)]
-    slip = read_records(RECORDS / "slip.csv", Rung)
-    mats = read_records(RECORDS / "mats.csv", MatRun)
-    if (RECORDS / "lattices.csv").is_file():
-        page = tables.filled(
-            page, "lattices", tables.lattice_table(read_records(RECORDS / "lattices.csv", LatticeRung))
-        )
-    # the first mat is that of the case's own box, and on the coarsest mesh; the sizes came last, on the case's own
-    resolution = [each for each in mats if each.side == mats[0].side]
-    sizes = [each for each in mats if each.edge == mats[-1].edge]
-    page = tables.filled(page, "ladder", tables.ladder_table(arrays))
-    page = tables.filled(page, "slip", tables.ladder_table(slip))
-    page = tables.filled(page, "balances", tables.balance_table([("arrays", arrays), ("slip", slip), ("mats", mats)]))
-    page = tables.filled(page, "resolution", tables.resolution_table(resolution))
-    page = tables.filled(page, "size", tables.size_table(sizes))
+    arrays = read_records(RECORDS / "arrays.csv", Rung)
+    lattice = read_records(RECORDS / "lattices.csv", LatticeRung)
+    usual = [rung for rung in arrays if (rung.mesher, rung.engine) == ("tetwild", "stokes")]
+    page = tables.filled(page, "arrays", tables.ladder_table([rung for rung in usual if rung.slip == 0.0]))
+    page = tables.filled(page, "slip", tables.ladder_table([rung for rung in usual if rung.slip > 0.0]))
+    page = tables.filled(page, "others", tables.ladder_table([rung for rung in arrays if rung not in usual]))
+    page = tables.filled(page, "lattices", tables.lattice_table(lattice))
+    elements = [rung for rung in arrays if rung.engine == "stokes"]
+    volumes = [rung for rung in arrays if rung.engine == "openfoam"]
+    balances = [("arrays, elements", elements), ("lattices, elements", lattice), ("arrays, simpleFoam", volumes)]
+    page = tables.filled(page, "balances", tables.balance_table(balances))
     drops = {name: read_records(RECORDS / f"{name}.csv", filters.Drop) for name in FILTERS}
     page = tables.filled(page, "filters", filters.drops_table(drops))
     PAGE.write_text(page, encoding="utf-8")
-    save_figure(ladder_figure([*arrays, *slip]), GALLERY / "verification_arrays.svg")
-    save_figure(mats_figure(resolution, sizes), GALLERY / "verification_mats.svg")
+    save_figure(ladder_figure(arrays, lattice), GALLERY / "verification_arrays.svg")
 
 
 if __name__ == "__main__":

@@ -2,8 +2,11 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import os
 import shutil
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from pipeline.analytics.formulas.slip import SLIP_COEFFICIENT
@@ -12,18 +15,48 @@ from pipeline.errors import CaseError
 from pipeline.line.run import Run, run
 from pipeline.mat.settings import ArraySettings
 from pipeline.nouns.fibers import Mat
-from pipeline.nouns.flow import Solution, SolvingCost
-from pipeline.nouns.mesh_measures import MeshingCost, TetmeshMeasures
+from pipeline.nouns.flow import Solution
+from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.progress import Progress, silent
-from pipeline.study.convergence import Convergence, convergence
+from pipeline.solve.settings import SolveSettings
 from validation.exact import hexagonal_drag, square_drag
 from validation.rows import drags_of_fibers, row_drags
 
 SOLIDITIES = (0.01, 0.05, 0.1, 0.2, 0.3)
+SLIPS = (0.0, 0.1, 1.0)
+"""Slip length over fiber radius."""
 FACTORS = (1.5, 1.0, 1 / 1.5)
 """Mesh spacing of each rung over that of the case file, coarse to fine."""
-SLIP = 0.1
-"""Slip length over fiber radius of the rungs with slip."""
+
+
+@dataclass(frozen=True, slots=True)
+class Climb:
+    """Arrays that one mesher and one solver are tried on, each on three meshes.
+
+    Parameters
+    ----------
+    arrangement : str
+    solidities : tuple of float [-]
+    slips : tuple of float [-]
+        Slip length over fiber radius.
+    mesher, engine : str
+        As ``tetmesh.engine`` and ``solve.engine`` name them.
+    """
+
+    arrangement: str
+    solidities: tuple[float, ...]
+    slips: tuple[float, ...]
+    mesher: str
+    engine: str
+
+
+CLIMBS = (
+    Climb("square", SOLIDITIES, SLIPS, "tetwild", "stokes"),
+    Climb("hexagonal", SOLIDITIES, SLIPS, "tetwild", "stokes"),
+    Climb("square", (0.05, 0.1, 0.3), (0.0, 0.1), "lattice", "stokes"),
+    Climb("square", (0.1,), (0.0, 0.1), "tetwild", "openfoam"),
+    Climb("square", (0.1,), (0.0,), "lattice", "openfoam"),
+)
 
 _WIDE_GAP = 1.2  # diameters between neighboring fibers, from which on the fibers set the scale of the flow
 _EXACT = {"square": square_drag, "hexagonal": hexagonal_drag}
@@ -39,6 +72,7 @@ class Rung:
     solidity : float [-]
     slip : float [-]
         Slip length over fiber radius.
+    mesher, engine : str
     edge : float [-]
         Edge length at the fibers in fiber diameters, as asked for.
     cells : int
@@ -55,12 +89,15 @@ class Rung:
     force_balance, mass_balance : float [-]
     iterations : int
     converged : bool
-    mesh_seconds, solve_seconds : float [s]
+    processor_seconds : float [s]
+        Of the whole line, its child processes included; of what was not yet there.
     """
 
     arrangement: str
     solidity: float
     slip: float
+    mesher: str
+    engine: str
     edge: float
     cells: int
     spacing: float
@@ -73,11 +110,12 @@ class Rung:
     mass_balance: float
     iterations: int
     converged: bool
-    mesh_seconds: float
-    solve_seconds: float
+    processor_seconds: float
 
 
-def rung_case(case: Case, solidity: float, factor: float, slip: float = 0.0) -> Case:
+def rung_case(
+    case: Case, solidity: float, factor: float, slip: float = 0.0, mesher: str = "tetwild", engine: str = "stokes"
+) -> Case:
     """Give a case another solidity, and scale its mesh as a whole: edges, growth, envelope, polygons, rings, depth.
 
     The lengths are the case's times the factor, and less where the gaps between the fibers are narrower than 1.2
@@ -108,8 +146,13 @@ def rung_case(case: Case, solidity: float, factor: float, slip: float = 0.0) -> 
             }
         ),
         "enclosure": case.enclosure.model_copy(update={"inlet": mat.pitch, "outlet": mat.pitch}),
-        "tetmesh": case.tetmesh.scaled(factor),
+        "tetmesh": (case.tetmesh if case.tetmesh.engine == mesher else case.tetmesh.changed(engine=mesher)).scaled(
+            factor
+        ),
+        "export": case.export.model_copy(update={"formats": ("openfoam",) if engine == "openfoam" else ()}),
     }
+    if engine != case.solve.engine:
+        changes["solve"] = SolveSettings.model_validate({"engine": engine})
     if slip:
         path = slip * 0.5 * mat.fiber_diameter / SLIP_COEFFICIENT
         changes["flow"] = case.flow.model_copy(update={"mean_free_path": path, "fiber_wall": "slip"})
@@ -128,7 +171,9 @@ def climb(case: Case, folder: Path, progress: Progress = silent) -> Rung:
     """
     mat, flow = case.mat, case.flow.flow()
     assert isinstance(mat, ArraySettings)
+    began = os.times()
     run(case, folder, "solve", progress=progress, without=frozenset({"report"}))
+    took = os.times()
     this = Run(case, folder)
     solution, measures = this.read(Solution), this.read(TetmeshMeasures)
     length = this.read(Mat).slab.size[1]
@@ -144,6 +189,8 @@ def climb(case: Case, folder: Path, progress: Progress = silent) -> Rung:
         arrangement=mat.arrangement,
         solidity=mat.solidity,
         slip=round(slip, 12),
+        mesher=case.tetmesh.engine,
+        engine=solution.engine,
         edge=case.tetmesh.edge,
         cells=measures.cells,
         spacing=(measures.fluid_volume / measures.cells) ** (1 / 3) / mat.fiber_diameter,
@@ -156,35 +203,25 @@ def climb(case: Case, folder: Path, progress: Progress = silent) -> Rung:
         mass_balance=solution.mass_balance_error,
         iterations=solution.iterations,
         converged=solution.converged,
-        mesh_seconds=this.read(MeshingCost).seconds,
-        solve_seconds=this.read(SolvingCost).seconds,
+        processor_seconds=sum(took[:4]) - sum(began[:4]),
     )
 
 
-def ladder(
-    case: Case, folder: Path, solidities: tuple[float, ...] = SOLIDITIES, slip: float = 0.0, progress: Progress = silent
-) -> list[Rung]:
-    """Climb three rungs at each solidity, coarse to fine.
+def ladder(case: Case, folder: Path, climbed: Climb, progress: Progress = silent) -> Iterator[Callable[[], Rung]]:
+    """Give three rungs to climb at each solidity and slip, coarse to fine.
 
-    With slip the mesh of the rung without slip is used again where it is there: the wall is all that differs.
+    With slip, and with the other solver, the mesh of the rung without slip is used again: the wall is all that differs.
     """
-    rungs = []
-    for solidity in solidities:
-        for level, factor in enumerate(FACTORS):
-            place = folder / f"solidity_{solidity:g}_{level}"
-            if slip:
-                place, without = place.with_name(f"{place.name}_slip"), place
-                if without.is_dir() and not place.exists():
-                    shutil.copytree(without, place)
-            rungs.append(climb(rung_case(case, solidity, factor, slip), place, progress))
-    return rungs
+    for solidity in climbed.solidities:
+        for slip in climbed.slips:
+            for level, factor in enumerate(FACTORS):
+                mesh = folder / f"{climbed.arrangement}_{solidity:g}_{climbed.mesher}_{level}"
+                this = rung_case(case, solidity, factor, slip, climbed.mesher, climbed.engine)
+                yield partial(_climb_beside, this, mesh, f"{slip:g}_{climbed.engine}", progress)
 
 
-def judged(rungs: list[Rung]) -> list[tuple[Rung, Convergence]]:
-    """Give the finest rung of each array with what its three rungs tell."""
-    results = []
-    for start in range(0, len(rungs), len(FACTORS)):
-        coarse, middle, fine = rungs[start : start + len(FACTORS)]
-        spacings = (coarse.spacing, middle.spacing, fine.spacing)
-        results.append((fine, convergence(spacings, (coarse.f_star, middle.f_star, fine.f_star))))
-    return results
+def _climb_beside(case: Case, mesh: Path, wall: str, progress: Progress) -> Rung:
+    first, place = mesh.with_name(f"{mesh.name}_0_stokes"), mesh.with_name(f"{mesh.name}_{wall}")
+    if first.is_dir() and not place.exists():
+        shutil.copytree(first, place)
+    return climb(case, place, progress)

@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 
 from pipeline.errors import StageError
-from pipeline.study.convergence import Convergence
-from validation.ladder import FACTORS, Rung, judged
-from validation.lattices import EDGES, LatticeRung
+from validation.judged import Judged, judged
+from validation.ladder import Rung
+from validation.lattices import LatticeRung
 from validation.mats import MatRun, mean_and_half_width, over_finest, spread
 
 
@@ -40,38 +40,39 @@ def filled(page: str, name: str, content: str) -> str:
 
 
 def lattice_table(rungs: list[LatticeRung]) -> str:
-    """Permeability of lattices on three meshes against the exact one, by the error of their resistance."""
-    rows = []
-    for start in range(0, len(rungs), len(EDGES)):
-        climbed = rungs[start : start + len(EDGES)]
-        fine = climbed[-1]
-        row = [fine.lattice, f"{fine.solidity:g}", fine.mesher, f"{fine.exact:.5g}"]
-        rows.append([*row, *(f"{_percent(rung.error)} ({rung.cells:,})" for rung in climbed)])
-    return table(["lattice", "solidity", "mesher", "exact k/a2", "coarse (cells)", "middle", "fine"], rows)
+    """Resistance of lattices on three meshes against the exact one."""
+    rows = [
+        [each.fine.lattice, f"{each.fine.solidity:g}", each.fine.mesher, f"{each.fine.exact:.5g}", *_of_three(each)]
+        for each in judged(rungs)
+    ]
+    return table(["lattice", "solidity", "mesher", "exact k/a2", *_HEADS], rows)
 
 
 def ladder_table(rungs: list[Rung]) -> str:
-    """F* on three meshes against the exact one, with observed order, extrapolation and grid convergence index."""
+    """Drag on three meshes against the exact one."""
     rows = []
-    for number, (fine, found) in enumerate(judged(rungs)):
-        climbed = rungs[len(FACTORS) * number : len(FACTORS) * (number + 1)]
-        rows.append(
-            [
-                fine.arrangement,
-                f"{fine.solidity:g}",
-                f"{fine.exact:.3f}",
-                *(f"{rung.f_star:.3f} ({_percent(rung.error)})" for rung in climbed),
-                _order(found),
-                f"{found.extrapolated:.3f} ({_percent(found.extrapolated / fine.exact - 1.0)})",
-                f"{100.0 * found.index:.1f} %",
-                f"{fine.cells:,}",
-            ]
-        )
-    head = ["array", "solidity", "exact F*", "coarse", "middle", "fine", "order", "extrapolated", "GCI", "cells (fine)"]
-    return table(head, rows)
+    for each in judged(rungs):
+        fine = each.fine
+        whose = [fine.arrangement, f"{fine.solidity:g}", f"{fine.slip:g}", fine.mesher, fine.engine]
+        rows.append([*whose, f"{fine.exact:.3f}", *_of_three(each)])
+    return table(["array", "solidity", "slip", "mesher", "solver", "exact F*", *_HEADS], rows)
 
 
-def balance_table(groups: Sequence[tuple[str, Sequence[Rung] | Sequence[MatRun]]]) -> str:
+_HEADS = ("coarse (cells)", "middle", "fine", "order", "observed", "extrapolated", "GCI")
+
+
+def _of_three(each: Judged[Rung] | Judged[LatticeRung]) -> list[str]:
+    found = each.found
+    return [
+        *(f"{_percent(rung.error)} ({rung.cells:,})" for rung in each.rungs),
+        _order(each.order),
+        _order(found.order),
+        _percent(found.extrapolated - 1.0),
+        f"{100.0 * found.index:.2f} %",
+    ]
+
+
+def balance_table(groups: Sequence[tuple[str, Sequence[Rung] | Sequence[LatticeRung]]]) -> str:
     """Worst force and mass balance, and the effort, of each group of runs."""
     rows = []
     for name, runs in groups:
@@ -79,15 +80,13 @@ def balance_table(groups: Sequence[tuple[str, Sequence[Rung] | Sequence[MatRun]]
             [
                 name,
                 str(len(runs)),
-                f"{sum(each.converged for each in runs)}",
                 f"{max(abs(each.force_balance) for each in runs):.1e}",
                 f"{max(abs(each.mass_balance) for each in runs):.1e}",
                 f"{min(each.iterations for each in runs)} to {max(each.iterations for each in runs)}",
-                f"{sum(each.mesh_seconds for each in runs) / 60:.0f} + "
-                f"{sum(each.solve_seconds for each in runs) / 60:.0f} min",
+                f"{sum(each.processor_seconds for each in runs) / 60:.1f} min",
             ]
         )
-    head = ["runs", "number", "settled", "forces, worst", "mass, worst", "iterations", "meshing + solving"]
+    head = ["runs", "number", "forces, worst", "mass, worst", "iterations", "processor time"]
     return table(head, rows)
 
 
@@ -128,8 +127,8 @@ def _percent(value: float) -> str:
     return f"{100.0 * value:+.2f} %"
 
 
-def _order(found: Convergence) -> str:
-    return "none (swings)" if math.isnan(found.order) else f"{found.order:.1f}"
+def _order(order: float) -> str:
+    return "swings" if math.isnan(order) else f"{order:.1f}"
 
 
 def _with_width(values: list[float], unit: str, signed: bool = False) -> str:
