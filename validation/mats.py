@@ -1,155 +1,184 @@
-"""How far a random mat's pressure drop depends on the mesh and on the size of the box, over a few seeds."""
+"""Small random mats on meshes of several edges, meshers and solvers: what each leaves of error, and what it costs."""
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import math
-from collections.abc import Sequence
+import os
+import statistics
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
-import numpy as np
-
 from pipeline.case import Case
-from pipeline.errors import CaseError
 from pipeline.line.run import Run, run
-from pipeline.mat.settings import LayeredSettings
 from pipeline.nouns.comparison import Comparison
-from pipeline.nouns.fibers import Mat
-from pipeline.nouns.flow import Solution, SolvingCost
-from pipeline.nouns.mesh_measures import MeshingCost, TetmeshMeasures
+from pipeline.nouns.flow import Solution
+from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.progress import Progress, silent
+from pipeline.solve.settings import SolveSettings
 
-SEEDS = (1, 2, 3)
-SIDES = (7e-6, 10e-6, 14e-6)
-"""Box sides of the size study [m]."""
-FACTORS = (1.5, 1.0, 0.7)
-"""Mesh spacing over the case's, coarse to fine, of the resolution study."""
+REFINED = range(1, 6)
+"""Seeds that are solved on every mesh."""
+SEEDS = range(1, 11)
+"""Seeds that are solved on the usual mesh of both meshers."""
+USUAL = 0.6
+MESHES = (
+    ("tetwild", 1.0, False),
+    ("tetwild", 0.8, False),
+    ("tetwild", 0.6, True),
+    ("tetwild", 0.4, True),
+    ("tetwild", 0.3, True),
+    ("lattice", 0.8, False),
+    ("lattice", 0.6, True),
+    ("lattice", 0.4, True),
+    ("snappy", 0.6, True),
+    ("snappy", 0.4, True),
+)
+"""Mesher, edge in fiber diameters, and whether finite volumes are solved on it too."""
+FINEST = "tetwild", 0.3
+"""Mesh whose elements stand for the limit."""
 
 
 @dataclass(frozen=True, slots=True)
 class MatRun:
-    """One mat on one mesh.
+    """One mat on one mesh, with slip as a case has it.
 
     Parameters
     ----------
-    side : float [m]
+    seed : int
+    mesher : str
     edge : float [-]
         Edge length at the fibers in fiber diameters, as asked for.
-    seed : int
-    fibers, cells : int
-    thickness : float [m]
+    cells : int
     solidity : float [-]
         Of the mesh.
-    cfd, davies : float [Pa]
-        Pressure drop, solved and by Davies at the mesh's solidity.
-    force_balance, mass_balance : float [-]
-    iterations : int
-    converged : bool
-    mesh_seconds, solve_seconds : float [s]
+    elements, volumes : float [Pa]
+        Pressure drop by second-order elements and by simpleFoam; nan where that was not solved.
+    mesh_seconds, elements_seconds, volumes_seconds : float [s]
+        Of processor time: the line up to the mesh and its report, and each solver with the files that it needs.
     """
 
-    side: float
-    edge: float
     seed: int
-    fibers: int
+    mesher: str
+    edge: float
     cells: int
-    thickness: float
     solidity: float
-    cfd: float
-    davies: float
-    force_balance: float
-    mass_balance: float
-    iterations: int
-    converged: bool
+    elements: float
+    volumes: float
     mesh_seconds: float
-    solve_seconds: float
+    elements_seconds: float
+    volumes_seconds: float
 
 
-def mat_case(case: Case, side: float, factor: float, seed: int) -> Case:
-    """Give a case another box, another seed, and a mesh with its edges and its envelope scaled.
-
-    Raises
-    ------
-    CaseError
-        If its mat is not layered.
-    """
-    if not isinstance(case.mat, LayeredSettings):
-        raise CaseError("the study of mats needs mat.generator = layered")
+def mat_case(case: Case, seed: int, mesher: str, edge: float) -> Case:
+    """Give a case of a random mat another seed, and another mesh."""
+    mesh = {"engine": mesher, "edge": edge}
     return case.model_copy(
         update={
-            "mat": case.mat.model_copy(update={"side": side, "seed": seed}),
-            "tetmesh": case.tetmesh.scaled(factor),
+            "mat": case.mat.model_copy(update={"seed": seed}),
+            "tetmesh": type(case.tetmesh).model_validate(mesh),
         }
     )
 
 
-def solved(case: Case, folder: Path, progress: Progress = silent) -> MatRun:
-    """Run a case of a layered mat and collect what the studies compare.
+def solved(case: Case, folder: Path, volumes: bool, progress: Progress = silent) -> MatRun:
+    """Run a case of a random mat, and solve it with elements where they take the mesh, and with volumes if asked.
 
     Raises
     ------
     StageError
         If a stage fails.
     """
-    assert isinstance(case.mat, LayeredSettings)
-    run(case, folder, "solve", progress=progress, without=frozenset({"report"}))
-    this = Run(case, folder)
-    solution, comparison, measures = this.read(Solution), this.read(Comparison), this.read(TetmeshMeasures)
+    elements = case.tetmesh.engine != "snappy"
+    drops, seconds = {"stokes": math.nan, "openfoam": math.nan}, {"stokes": math.nan, "openfoam": math.nan}
+    meshing = _seconds(case, folder, "compare", frozenset({"report", "export"}), progress)
+    for engine, asked in (("stokes", elements), ("openfoam", volumes)):
+        if asked:
+            this = case.model_copy(update={"solve": SolveSettings.model_validate({"engine": engine})})
+            without = {"report"} if engine == "openfoam" else {"report", "export"}
+            seconds[engine] = _seconds(this, folder, "solve", frozenset(without), progress)
+            drops[engine] = Run(this, folder).read(Solution).pressure_drop
+    results = Run(case, folder)
     return MatRun(
-        side=case.mat.side,
+        seed=int(getattr(case.mat, "seed")),  # noqa: B009 - not every generator draws
+        mesher=case.tetmesh.engine,
         edge=case.tetmesh.edge,
-        seed=case.mat.seed,
-        fibers=this.read(Mat).fibers,
-        cells=measures.cells,
-        thickness=this.read(Mat).thickness,
-        solidity=comparison.solidity["mesh"],
-        cfd=solution.pressure_drop,
-        davies=comparison.models["davies"].mesh,
-        force_balance=solution.force_balance_error,
-        mass_balance=solution.mass_balance_error,
-        iterations=solution.iterations,
-        converged=solution.converged,
-        mesh_seconds=this.read(MeshingCost).seconds,
-        solve_seconds=this.read(SolvingCost).seconds,
+        cells=results.read(TetmeshMeasures).cells,
+        solidity=results.read(Comparison).solidity["mesh"],
+        elements=drops["stokes"],
+        volumes=drops["openfoam"],
+        mesh_seconds=meshing,
+        elements_seconds=seconds["stokes"],
+        volumes_seconds=seconds["openfoam"],
     )
 
 
-def mat_runs(case: Case, folder: Path, progress: Progress = silent) -> list[MatRun]:
-    """Run both studies: the case's box on three meshes, and boxes of other sides on the case's mesh."""
-    assert isinstance(case.mat, LayeredSettings)
-    pairs = [(case.mat.side, factor) for factor in FACTORS]
-    pairs += [(side, 1.0) for side in SIDES if not math.isclose(side, case.mat.side)]
-    runs = []
-    for side, factor in pairs:
-        for seed in SEEDS:
-            place = folder / f"side_{1e6 * side:g}_spacing_{factor:g}_seed_{seed}"
-            runs.append(solved(mat_case(case, side, factor, seed), place, progress))
-    return runs
+def _seconds(case: Case, folder: Path, until: str, without: frozenset[str], progress: Progress) -> float:
+    began = os.times()
+    run(case, folder, until, progress=progress, without=without)
+    return sum(os.times()[:4]) - sum(began[:4])
 
 
-def mean_and_half_width(values: Sequence[float]) -> tuple[float, float]:
-    """Give the mean and the half width of its 95 % confidence interval (Student's t).
+def mat_runs(case: Case, folder: Path, progress: Progress = silent) -> Iterator[Callable[[], MatRun]]:
+    """Give every run of the study."""
+    for seed in SEEDS:
+        for mesher, edge, volumes in MESHES:
+            if seed in REFINED or (edge == USUAL and mesher != "snappy"):
+                place = folder / f"{mesher}_{edge:g}_{seed}"
+                yield partial(solved, mat_case(case, seed, mesher, edge), place, volumes, progress)
 
-    Examples
-    --------
-    >>> mean, half = mean_and_half_width([1.0, 2.0, 3.0])
-    >>> mean, round(half, 3)
-    (2.0, 2.484)
+
+@dataclass(frozen=True, slots=True)
+class EdgeError:
+    """How far pressure drops on meshes of one edge are off those on the finest.
+
+    Parameters
+    ----------
+    mesher : str
+    solver : str
+        ``stokes`` or ``openfoam``.
+    edge : float [-]
+        In fiber diameters.
+    mats : int
+    mean, low, high : float [-]
+        Of the error, relative.
+    cells : float
+        On average.
+    seconds : float [s]
+        Of processor time for mesh and flow, on average.
     """
-    from scipy.stats import t
 
-    count = len(values)
-    return float(np.mean(values)), float(t.ppf(0.975, count - 1) * np.std(values, ddof=1) / math.sqrt(count))
+    mesher: str
+    solver: str
+    edge: float
+    mats: int
+    mean: float
+    low: float
+    high: float
+    cells: float
+    seconds: float
 
 
-def spread(runs: Sequence[MatRun], by: str) -> list[tuple[float, list[MatRun]]]:
-    """Group runs by a field, in rising order of it."""
-    keys = sorted({getattr(each, by) for each in runs})
-    return [(key, [each for each in runs if getattr(each, by) == key]) for key in keys]
-
-
-def over_finest(runs: Sequence[MatRun]) -> list[tuple[float, list[float]]]:
-    """Give per edge length the pressure drop of each mat over that of the same mat on the finest mesh."""
-    groups = spread(runs, "edge")
-    finest = {each.seed: each.cfd for each in groups[0][1]}
-    return [(edge, [each.cfd / finest[each.seed] for each in group]) for edge, group in groups]
+def edge_errors(runs: Sequence[MatRun]) -> list[EdgeError]:
+    """Tell, for every mesher, solver and edge, the errors against each mat's finest mesh."""
+    limit = {each.seed: each.elements for each in runs if (each.mesher, each.edge) == FINEST}
+    found = []
+    for mesher, edge, _ in MESHES:
+        group = [each for each in runs if (each.mesher, each.edge) == (mesher, edge) and each.seed in limit]
+        for solver, drop, spent in (
+            ("stokes", "elements", "elements_seconds"),
+            ("openfoam", "volumes", "volumes_seconds"),
+        ):
+            solved_runs = [each for each in group if math.isfinite(getattr(each, drop))]
+            if not solved_runs or (solver, mesher, edge) == ("stokes", *FINEST):
+                continue
+            errors = [getattr(each, drop) / limit[each.seed] - 1.0 for each in solved_runs]
+            found.append(
+                EdgeError(
+                    mesher, solver, edge, len(errors), statistics.fmean(errors), min(errors), max(errors),
+                    statistics.fmean(each.cells for each in solved_runs),
+                    statistics.fmean(each.mesh_seconds + getattr(each, spent) for each in solved_runs),
+                )
+            )  # fmt: skip
+    return found

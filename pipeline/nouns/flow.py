@@ -85,6 +85,12 @@ class Solution:
         Flow regime that it belongs to.
     wall_edges, straight_wall_edges : int, optional
         Edges of the mesh on fibers, and those of them that are not curved onto the true fibers.
+    mesh_error : tuple of 3 floats [-], optional
+        Mean, lowest and highest error, relative, of pressure drops on meshes of this edge, mesher and solver, measured
+        on other mats; None where that was not measured.
+    seed_spread : float [-], optional
+        Standard deviation over seeds, relative, as measured on other mats scales to this plan; None for a mat that no
+        seed draws, and for plans unlike the measured.
     """
 
     pressure_drop: float
@@ -112,6 +118,8 @@ class Solution:
     regime: str | None = None
     wall_edges: int | None = None
     straight_wall_edges: int | None = None
+    mesh_error: tuple[float, float, float] | None = None
+    seed_spread: float | None = None
 
     @property
     def inertia_words(self) -> str:

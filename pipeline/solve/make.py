@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pipeline.analytics.formulas.slip import knudsen, regime, slip_length
+from pipeline.analytics.measured_errors import mesh_error, seed_spread
 from pipeline.analytics.models.pressure_models import pressure_model
 from pipeline.line import store
 from pipeline.line.places import kept_folder
@@ -46,6 +47,7 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     )
     engine = _by_openfoam if results.case.solve.engine == "openfoam" else _by_elements
     solution, settled, cost = engine(results, into, bed, progress)
+    solution = _with_known_errors(solution, results)
     store.write_json(into / "solution.json", solution)
     store.write_json(into / "settling.json", settled)
     store.write_json(into / "cost.json", cost)
@@ -56,6 +58,19 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
         "converged": solution.converged,
         "force_balance_error": solution.force_balance_error,
     }
+
+
+def _with_known_errors(solution: Solution, results: "Results") -> Solution:
+    """Add what is known of the error without solving other meshes and other mats."""
+    case, diameter = results.case, results.read(Comparison).fiber_diameter
+    mesh = mesh_error(case.tetmesh.engine, solution.engine, case.tetmesh.edge)
+    slab = results.read(Surface).slab
+    drawn = case.mat.generator in ("layered", "box")
+    return replace(
+        solution,
+        mesh_error=None if mesh is None else (mesh.mean, mesh.low, mesh.high),
+        seed_spread=seed_spread(slab.face_area / diameter**2) if drawn else None,
+    )
 
 
 def _by_elements(

@@ -33,7 +33,7 @@ SOLVE = Stage(
         Settling: "settling.json",
     },
     settings=SolveSettings,
-    reads=("flow", "mat", "enclosure"),
+    reads=("flow", "mat", "enclosure", "tetmesh"),
     records=("cost.json", "settling.json", "log.*", "*/log.*", "*/fibertwin.*"),
     units={"pressure_drop": "Pa", "force_balance_error": "%"},
     obstacle=Entry("pipeline.solve.make:obstacle"),

@@ -6,6 +6,7 @@ import math
 
 from pipeline.analytics.models.prediction import filter_of_mat, predict
 from pipeline.analytics.models.single_fiber import PRESETS
+from pipeline.analytics.sureness import sureness
 from pipeline.analytics.settings import FilterSettings, FlowSettings
 from pipeline.analytics.tables.rows import comparison_tables, length, prediction_tables
 from pipeline.line.results import Results
@@ -123,8 +124,8 @@ def _what_is_known(s: Solution, converged: ConvergedDrop | None) -> str:
         )
     settled = "" if s.pressure_drop_error is None else f" The iterations leave {s.pressure_drop_error:.0e} of it."
     return (
-        f"This number stands on one mesh, in one box, of one seed.{settled} What the mesh leaves is not known without "
-        "others: fibertwin converge solves on three and gives the number with its interval."
+        f"{sureness(s)}.{settled} fibertwin converge solves this mat on three meshes and gives the number with its own "
+        "interval."
     )
 
 

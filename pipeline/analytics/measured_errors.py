@@ -1,0 +1,156 @@
+"""What is known of a pressure drop's error before other meshes are solved: measured once on mats, and kept in a file.
+
+``docs/verify.py`` writes the file beside this one; docs/verification.md shows it and says how it was measured.
+"""
+
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+FILE = Path(__file__).with_suffix(".json")
+_SOLVERS = {"stokes": "second-order elements", "openfoam": "finite volumes"}
+
+
+@dataclass(frozen=True, slots=True)
+class EdgeError:
+    """How far pressure drops on meshes of one edge are off those on much finer ones.
+
+    Parameters
+    ----------
+    mesher, solver : str
+        As ``tetmesh.engine`` and ``solve.engine`` name them.
+    edge : float [-]
+        At the fibers, in fiber diameters.
+    mats : int
+        How many were measured.
+    mean, low, high : float [-]
+        Of the error, relative: over the mats.
+    cells : float
+        Per fiber diameter of fiber length, on average.
+    seconds : float [s]
+        Of processor time for mesh and flow per fiber diameter of fiber length, on average.
+    """
+
+    mesher: str
+    solver: str
+    edge: float
+    mats: int
+    mean: float
+    low: float
+    high: float
+    cells: float
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class SeedSpread:
+    """How much mats of other seeds differ.
+
+    Parameters
+    ----------
+    area : float [-]
+        Plan of the mats in squared fiber diameters.
+    mats : int
+    deviation : float [-]
+        Standard deviation of the pressure drop over its mean.
+    """
+
+    area: float
+    mats: int
+    deviation: float
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """All that the file holds.
+
+    Parameters
+    ----------
+    source : str
+        Where it is shown.
+    edges : tuple of EdgeError
+    seeds : SeedSpread
+    """
+
+    source: str
+    edges: tuple[EdgeError, ...]
+    seeds: SeedSpread
+
+
+@cache
+def measured() -> Measured:
+    """Read the file."""
+    content = json.loads(FILE.read_text(encoding="utf-8"))
+    edges = tuple(EdgeError(**each) for each in content["edges"])
+    return Measured(content["source"], edges, SeedSpread(**content["seeds"]))
+
+
+def mesh_error(mesher: str, solver: str, edge: float, known: Sequence[EdgeError] | None = None) -> EdgeError | None:
+    """Interpolate what a mesh leaves; None outside the edges that were measured.
+
+    Parameters
+    ----------
+    mesher, solver : str
+        As ``tetmesh.engine`` and ``solve.engine`` name them.
+    edge : float [-]
+        At the fibers, in fiber diameters.
+    known : sequence of EdgeError
+        Measured; those of the file unless given.
+
+    Returns
+    -------
+    EdgeError or None
+        Between the two measured edges around it, linear in the square of the edge.
+
+    Examples
+    --------
+    >>> coarse = EdgeError("tetwild", "stokes", 1.0, 5, 0.03, 0.02, 0.04, 100.0, 0.2)
+    >>> fine = EdgeError("tetwild", "stokes", 0.5, 5, 0.006, 0.004, 0.01, 300.0, 0.5)
+    >>> round(mesh_error("tetwild", "stokes", 0.75, [coarse, fine]).mean, 3)
+    0.016
+    """
+    rows = sorted(
+        (each for each in known or measured().edges if (each.mesher, each.solver) == (mesher, solver)),
+        key=lambda each: each.edge,
+    )
+    for low, high in zip(rows[:-1], rows[1:], strict=True):
+        if low.edge <= edge <= high.edge:
+            share = (edge**2 - low.edge**2) / (high.edge**2 - low.edge**2)
+            between = {
+                name: (1.0 - share) * getattr(low, name) + share * getattr(high, name)
+                for name in ("mean", "low", "high", "cells", "seconds")
+            }
+            return EdgeError(mesher, solver, edge, min(low.mats, high.mats), **between)
+    return None
+
+
+def seed_spread(area: float) -> float | None:
+    """Estimate how much another seed changes the pressure drop, as a standard deviation over the mean.
+
+    Parameters
+    ----------
+    area : float [-]
+        Plan in squared fiber diameters.
+
+    Returns
+    -------
+    float [-] or None
+        The measured one times the root of the ratio of areas, as independent parts of a plan average; None where the
+        area is more than ten times that of the measured mats, or less than half of it.
+    """
+    seeds = measured().seeds
+    if not 0.5 <= area / seeds.area <= 10.0:
+        return None
+    return seeds.deviation * math.sqrt(seeds.area / area)
+
+
+def needed_edge(mesher: str, solver: str, error: float) -> EdgeError | None:
+    """Give the longest edge whose error stays within a bound on average; None where none that was measured does."""
+    rows = [each for each in measured().edges if (each.mesher, each.solver) == (mesher, solver)]
+    fitting = [each for each in rows if abs(each.mean) <= error]
+    return max(fitting, key=lambda each: each.edge) if fitting else None
