@@ -1,6 +1,7 @@
 """Measure what docs/verification.md shows, and write its tables and plots: ``make verify``.
 
-``python docs/verify.py RUNS [PART ...]`` runs some parts only: arrays, lattices, filters, and page, which writes tables and plots from what the others left in docs/verification. Finished runs are reused.
+``python docs/verify.py RUNS [PART ...]`` runs some parts only: arrays, lattices, mats, and
+page, which writes tables and plots from what the others left in docs/verification. Finished runs are reused.
 """
 
 # SPDX-License-Identifier: GPL-3.0-or-later
@@ -10,17 +11,14 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pipeline.analytics.measured_errors import Measured, write_measured
 from pipeline.analytics.tables.plots import save_figure
 from pipeline.case import read_case
-from pipeline.line.run import Run, run
-from pipeline.nouns.flow import Solution
-from pipeline.pictures.flow import read_flow, slice_figure, streamline_figure
-from pipeline.pictures.panels import write_png
-from pipeline.solve.settings import SolveSettings
-from validation import filters, tables
+from validation import tables
 from validation.ladder import CLIMBS, Rung, ladder
 from validation.lattices import LatticeRung, lattices
-from validation.plots import ladder_figure
+from validation.mats import MatRun, edge_errors, mat_runs, of_seeds
+from validation.plots import cost_figure, ladder_figure
 from validation.records import read_records, write_records
 
 if TYPE_CHECKING:
@@ -30,8 +28,7 @@ DOCS = Path(__file__).parent
 PAGE, RECORDS, GALLERY = DOCS / "verification.md", DOCS / "verification", DOCS / "gallery"
 CASES = DOCS.parent / "cases"
 ARRAYS = ("square", "hexagonal")
-FILTERS = ("default", "figure10_corner")
-PARTS = ("arrays", "lattices", "filters", "page")
+PARTS = ("arrays", "lattices", "mats", "page")
 
 
 def told(what: str, done: float | None = None) -> None:
@@ -48,31 +45,19 @@ def measure(part: str, runs: Path) -> None:
         collect(part, runs, jobs, Rung)
     elif part == "lattices":
         collect(part, runs, list(lattices(runs / part, progress=told)), LatticeRung)
-    else:
-        for name in FILTERS:
-            solve_filter(name, runs / name)
+    elif part == "mats":
+        case = read_case(CASES / "verification" / "mat.toml")
+        collect(part, runs, list(mat_runs(case, runs / part, told)), MatRun)
 
 
 def collect(part: str, runs: Path, jobs: "Sequence[Callable[[], DataclassInstance]]", kind: type) -> None:
-    """Do jobs one by one, and keep what they found; what an interrupted call of the same runs found is not done again."""
+    """Do jobs one by one, and keep what they found; what an interrupted call found is not done again."""
     kept = runs / f"{part}.csv"
     found = read_records(kept, kind) if kept.is_file() else []
     for job in jobs[len(found) :]:
         found.append(job())
         write_records(kept, found)
     write_records(RECORDS / kept.name, found)
-
-
-def solve_filter(name: str, folder: Path) -> None:
-    """Solve a bundled case, keep its pressure drops, and draw the flow."""
-    case = read_case(CASES / f"{name}.toml").model_copy(update={"solve": SolveSettings(engine="openfoam")})
-    run(case, folder, "solve", tell=told, without=frozenset({"report"}))
-    this = Run(case, folder)
-    write_records(RECORDS / f"{name}.csv", filters.pressure_drops(this))
-    flow = read_flow(folder / "solve" / "openfoam", case.flow.flow().density)
-    title = f"cases/{name}.toml, {this.read(Solution).pressure_drop:.3g} Pa"
-    write_png(slice_figure(flow, title), GALLERY / f"flow_{name}_slice.png")
-    write_png(streamline_figure(flow, title), GALLERY / f"flow_{name}_streamlines.png")
 
 
 def write_page() -> None:
@@ -89,8 +74,14 @@ def write_page() -> None:
     volumes = [rung for rung in arrays if rung.engine == "openfoam"]
     balances = [("arrays, elements", elements), ("lattices, elements", lattice), ("arrays, simpleFoam", volumes)]
     page = tables.filled(page, "balances", tables.balance_table(balances))
-    drops = {name: read_records(RECORDS / f"{name}.csv", filters.Drop) for name in FILTERS}
-    page = tables.filled(page, "filters", filters.drops_table(drops))
+    mats = read_records(RECORDS / "mats.csv", MatRun)
+    errors = edge_errors(mats)
+    page = tables.filled(page, "edges", tables.edges_table(errors))
+    page = tables.filled(page, "time to one percent", tables.time_table(errors))
+    page = tables.filled(page, "agreement", tables.agreement_table(mats, errors))
+    seeds = of_seeds(mats, read_case(CASES / "verification" / "mat.toml"))
+    write_measured(Measured("docs/verification.md, by make verify", tuple(errors), seeds))
+    save_figure(cost_figure(errors), GALLERY / "verification_cost.svg")
     PAGE.write_text(page, encoding="utf-8")
     save_figure(ladder_figure(arrays, lattice), GALLERY / "verification_arrays.svg")
 

@@ -10,10 +10,13 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+from pipeline.analytics.measured_errors import EdgeError, SeedSpread
 from pipeline.case import Case
 from pipeline.line.run import Run, run
+from pipeline.mat.settings import LayeredSettings
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.flow import Solution
+from pipeline.nouns.mat_measures import MatMeasures
 from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.progress import Progress, silent
 from pipeline.solve.settings import SolveSettings
@@ -51,6 +54,8 @@ class MatRun:
     edge : float [-]
         Edge length at the fibers in fiber diameters, as asked for.
     cells : int
+    length : float [-]
+        Of all fibers, in fiber diameters.
     solidity : float [-]
         Of the mesh.
     elements, volumes : float [Pa]
@@ -63,6 +68,7 @@ class MatRun:
     mesher: str
     edge: float
     cells: int
+    length: float
     solidity: float
     elements: float
     volumes: float
@@ -105,6 +111,7 @@ def solved(case: Case, folder: Path, volumes: bool, progress: Progress = silent)
         mesher=case.tetmesh.engine,
         edge=case.tetmesh.edge,
         cells=results.read(TetmeshMeasures).cells,
+        length=results.read(MatMeasures).total_length / results.read(Comparison).fiber_diameter,
         solidity=results.read(Comparison).solidity["mesh"],
         elements=drops["stokes"],
         volumes=drops["openfoam"],
@@ -129,37 +136,6 @@ def mat_runs(case: Case, folder: Path, progress: Progress = silent) -> Iterator[
                 yield partial(solved, mat_case(case, seed, mesher, edge), place, volumes, progress)
 
 
-@dataclass(frozen=True, slots=True)
-class EdgeError:
-    """How far pressure drops on meshes of one edge are off those on the finest.
-
-    Parameters
-    ----------
-    mesher : str
-    solver : str
-        ``stokes`` or ``openfoam``.
-    edge : float [-]
-        In fiber diameters.
-    mats : int
-    mean, low, high : float [-]
-        Of the error, relative.
-    cells : float
-        On average.
-    seconds : float [s]
-        Of processor time for mesh and flow, on average.
-    """
-
-    mesher: str
-    solver: str
-    edge: float
-    mats: int
-    mean: float
-    low: float
-    high: float
-    cells: float
-    seconds: float
-
-
 def edge_errors(runs: Sequence[MatRun]) -> list[EdgeError]:
     """Tell, for every mesher, solver and edge, the errors against each mat's finest mesh."""
     limit = {each.seed: each.elements for each in runs if (each.mesher, each.edge) == FINEST}
@@ -177,8 +153,16 @@ def edge_errors(runs: Sequence[MatRun]) -> list[EdgeError]:
             found.append(
                 EdgeError(
                     mesher, solver, edge, len(errors), statistics.fmean(errors), min(errors), max(errors),
-                    statistics.fmean(each.cells for each in solved_runs),
-                    statistics.fmean(each.mesh_seconds + getattr(each, spent) for each in solved_runs),
+                    statistics.fmean(each.cells / each.length for each in solved_runs),
+                    statistics.fmean((each.mesh_seconds + getattr(each, spent)) / each.length for each in solved_runs),
                 )
             )  # fmt: skip
     return found
+
+
+def of_seeds(runs: Sequence[MatRun], case: Case) -> SeedSpread:
+    """Tell how much the seeds differ, on the usual mesh of the default mesher."""
+    assert isinstance(case.mat, LayeredSettings)
+    drops = [each.elements for each in runs if (each.mesher, each.edge) == ("tetwild", USUAL)]
+    area = (case.mat.side / case.mat.fiber_diameter.mean) ** 2
+    return SeedSpread(area, len(drops), statistics.stdev(drops) / statistics.fmean(drops))

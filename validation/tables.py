@@ -5,11 +5,16 @@
 import math
 from collections.abc import Sequence
 
+from pipeline.analytics.measured_errors import EdgeError, Need, needed_edge
 from pipeline.errors import StageError
 from validation.judged import Judged, judged
 from validation.ladder import Rung
 from validation.lattices import LatticeRung
-from validation.mats import MatRun, mean_and_half_width, over_finest, spread
+from validation.mats import USUAL, MatRun
+
+SOLVERS = {"stokes": "elements", "openfoam": "simpleFoam"}
+ASKED = (0.05, 0.02, 0.01)
+"""Errors whose cost is told."""
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
@@ -90,37 +95,74 @@ def balance_table(groups: Sequence[tuple[str, Sequence[Rung] | Sequence[LatticeR
     return table(head, rows)
 
 
-def resolution_table(runs: list[MatRun]) -> str:
-    """Pressure drop of the same mats on three meshes."""
-    over = dict(over_finest(runs))
-    rows = []
-    for edge, group in reversed(spread(runs, "edge")):
-        rows.append(
-            [
-                f"{edge:g}",
-                f"{sum(each.cells for each in group) // len(group):,}",
-                *(f"{each.cfd:.3f}" for each in group),
-                _with_width([100.0 * (value - 1.0) for value in over[edge]], "%", signed=True),
-            ]
-        )
-    seeds = [f"seed {each.seed} [Pa]" for each in spread(runs, "edge")[0][1]]
-    return table(["edge [diameters]", "cells (mean)", *seeds, "against the finest"], rows)
+def edges_table(found: Sequence[EdgeError]) -> str:
+    """Error and cost of random mats by mesher, solver and edge."""
+    rows = [
+        [
+            each.mesher,
+            SOLVERS[each.solver],
+            f"{each.edge:g}",
+            f"{100.0 * each.mean:+.1f} % ({100.0 * each.low:+.1f} to {100.0 * each.high:+.1f} %)",
+            str(each.mats),
+            f"{each.cells:.0f}",
+            f"{1e3 * each.seconds:.0f} ms",
+        ]
+        for each in found
+    ]
+    head = [
+        "mesher",
+        "solver",
+        "edge [d]",
+        "error, mean (range)",
+        "mats",
+        "cells per d of fiber",
+        "time per d of fiber",
+    ]
+    return table(head, rows)
 
 
-def size_table(runs: list[MatRun]) -> str:
-    """Pressure drop of mats in boxes of several sides."""
+def time_table(found: Sequence[EdgeError]) -> str:
+    """Tell what 5, 2 and 1 % cost with each mesher and solver, by the trend of what was measured."""
     rows = []
-    for side, group in spread(runs, "side"):
+    for mesher, solver in dict.fromkeys((each.mesher, each.solver) for each in found):
+        needs = [needed_edge(mesher, solver, error, found) for error in ASKED]
+        rows.append([mesher, SOLVERS[solver], *("not known" if each is None else _need(each) for each in needs)])
+    return table(["mesher", "solver", *(f"{100.0 * error:.0f} %" for error in ASKED)], rows)
+
+
+def _need(need: Need) -> str:
+    trend = "" if need.measured else " (trend)"
+    return f"edge {need.edge:.2f}: {need.cells:,.0f} cells, {need.seconds:.2g} s{trend}"
+
+
+def agreement_table(runs: Sequence[MatRun], found: Sequence[EdgeError]) -> str:
+    """Show mats by both meshers and both solvers on the usual mesh, and whether their intervals meet."""
+    stated = {(each.mesher, each.solver): each for each in found if each.edge == USUAL}
+    rows = []
+    for seed in sorted({each.seed for each in runs}):
+        of_mesher = {each.mesher: each for each in runs if each.seed == seed and each.edge == USUAL}
+        truest, lattice = of_mesher["tetwild"], of_mesher["lattice"]
+        bands = [
+            (drop / (1.0 + stated[key].high), drop / (1.0 + stated[key].low))
+            for key, drop in (
+                (("tetwild", "stokes"), truest.elements),
+                (("lattice", "stokes"), lattice.elements),
+                (("tetwild", "openfoam"), truest.volumes),
+            )
+        ]
+        low, high = max(band[0] for band in bands), min(band[1] for band in bands)
+        apart = "meet" if low <= high else f"{100.0 * (low / high - 1.0):.1f} % apart"
         rows.append(
             [
-                f"{1e6 * side:g} um",
-                f"{sum(each.fibers for each in group) / len(group):.1f}",
-                _with_width([100.0 * each.solidity for each in group], "%"),
-                _with_width([each.cfd for each in group], "Pa"),
-                _with_width([each.cfd / each.davies for each in group], ""),
+                str(seed),
+                f"{truest.elements:.3f}",
+                f"{lattice.elements:.3f} ({_percent(lattice.elements / truest.elements - 1.0)})",
+                f"{truest.volumes:.3f} ({_percent(truest.volumes / truest.elements - 1.0)})",
+                apart,
             ]
         )
-    return table(["side", "fibers (mean)", "solidity of the mesh", "CFD", "CFD over Davies"], rows)
+    head = ["seed", "fTetWild, elements [Pa]", "lattice, elements", "fTetWild, simpleFoam", "less their stated errors"]
+    return table(head, rows)
 
 
 def _percent(value: float) -> str:
@@ -129,8 +171,3 @@ def _percent(value: float) -> str:
 
 def _order(order: float) -> str:
     return "swings" if math.isnan(order) else f"{order:.1f}"
-
-
-def _with_width(values: list[float], unit: str, signed: bool = False) -> str:
-    mean, half = mean_and_half_width(values)
-    return f"{mean:{'+' if signed else ''}.3g} ± {half:.2g} {unit}".strip()

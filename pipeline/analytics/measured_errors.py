@@ -7,9 +7,11 @@
 
 import json
 import math
+import statistics
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 FILE = Path(__file__).with_suffix(".json")
@@ -90,6 +92,12 @@ def measured() -> Measured:
     return Measured(content["source"], edges, SeedSpread(**content["seeds"]))
 
 
+def write_measured(found: Measured) -> None:
+    """Write the file, numbers with four digits."""
+    rounded = json.loads(json.dumps(asdict(found)), parse_float=lambda text: float(f"{float(text):.4g}"))
+    FILE.write_text(json.dumps(rounded, indent=1) + "\n", encoding="utf-8")
+
+
 def mesh_error(mesher: str, solver: str, edge: float, known: Sequence[EdgeError] | None = None) -> EdgeError | None:
     """Interpolate what a mesh leaves; None outside the edges that were measured.
 
@@ -118,7 +126,7 @@ def mesh_error(mesher: str, solver: str, edge: float, known: Sequence[EdgeError]
         (each for each in known or measured().edges if (each.mesher, each.solver) == (mesher, solver)),
         key=lambda each: each.edge,
     )
-    for low, high in zip(rows[:-1], rows[1:], strict=True):
+    for low, high in pairwise(rows):
         if low.edge <= edge <= high.edge:
             share = (edge**2 - low.edge**2) / (high.edge**2 - low.edge**2)
             between = {
@@ -149,8 +157,67 @@ def seed_spread(area: float) -> float | None:
     return seeds.deviation * math.sqrt(seeds.area / area)
 
 
-def needed_edge(mesher: str, solver: str, error: float) -> EdgeError | None:
-    """Give the longest edge whose error stays within a bound on average; None where none that was measured does."""
-    rows = [each for each in measured().edges if (each.mesher, each.solver) == (mesher, solver)]
-    fitting = [each for each in rows if abs(each.mean) <= error]
-    return max(fitting, key=lambda each: each.edge) if fitting else None
+@dataclass(frozen=True, slots=True)
+class Need:
+    """A mesh that is fine enough.
+
+    Parameters
+    ----------
+    error : float [-]
+        That is asked for, relative.
+    edge : float [-]
+        At the fibers, in fiber diameters.
+    cells, seconds : float [-], [s]
+        Per fiber diameter of fiber length, as in `EdgeError`.
+    measured : bool
+        Whether the edge lies within those measured; if not, it follows their trend.
+    """
+
+    error: float
+    edge: float
+    cells: float
+    seconds: float
+    measured: bool
+
+
+def needed_edge(mesher: str, solver: str, error: float, known: Sequence[EdgeError] | None = None) -> Need | None:
+    """Estimate the edge that gives an error, by powers of the edge fitted to what was measured.
+
+    Parameters
+    ----------
+    mesher, solver : str
+        As ``tetmesh.engine`` and ``solve.engine`` name them.
+    error : float [-]
+        Relative.
+    known : sequence of EdgeError
+        Measured; those of the file unless given.
+
+    Returns
+    -------
+    Need or None
+        None where fewer than two edges were measured.
+
+    Examples
+    --------
+    >>> rows = [EdgeError("m", "s", h, 5, -0.1 * h**2, 0.0, 0.0, h**-3, h**-3) for h in (1.0, 0.5)]
+    >>> need = needed_edge("m", "s", 0.001, rows)
+    >>> round(need.edge, 3), round(need.cells), need.measured
+    (0.1, 1000, False)
+    """
+    rows = [each for each in known or measured().edges if (each.mesher, each.solver) == (mesher, solver)]
+    if len(rows) < 2:
+        return None
+    edges = [each.edge for each in rows]
+    (scale, power), cells, seconds = (
+        _power(edges, values)
+        for values in ([abs(r.mean) for r in rows], [r.cells for r in rows], [r.seconds for r in rows])
+    )
+    edge = (error / scale) ** (1.0 / power)
+    at = [each[0] * edge ** each[1] for each in (cells, seconds)]
+    return Need(error, edge, at[0], at[1], min(edges) <= edge <= max(edges))
+
+
+def _power(edges: Sequence[float], values: Sequence[float]) -> tuple[float, float]:
+    """Scale and power of the line through values on logarithmic axes."""
+    slope, offset = statistics.linear_regression([math.log(e) for e in edges], [math.log(v) for v in values])
+    return math.exp(offset), slope

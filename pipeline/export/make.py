@@ -47,4 +47,5 @@ def order_of(results: "Results", formats: Iterable[str], progress: Progress) -> 
         radius = fiber_radius(results.read(FaceMesh), results.read(FluidDomain).radius)
         slip = FiberSlip(SLIP_COEFFICIENT * flow.mean_free_path, radius)
     fields = shown.by_name() if shown is not None else {}
-    return Order(case.export, flow, case.enclosure.sides, fields, slip, progress)
+    mesh = case.tetmesh
+    return Order(case.export, flow, case.enclosure.sides, fields, slip, progress, mesh.engine, mesh.edge)

@@ -29,5 +29,5 @@ EXPORT = Stage(
     takes=_colors,
     gives={OpenFoamCase: "openfoam"},
     settings=ExportSettings,
-    reads=("flow", "enclosure"),
+    reads=("flow", "enclosure", "tetmesh"),
 )

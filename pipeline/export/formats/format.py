@@ -35,6 +35,10 @@ class Order:
     slip : FiberSlip, optional
         How far the air slips along the fibers; it stands still on them without.
     progress : Progress
+    mesher : str, optional
+        As ``tetmesh.engine`` names it, and
+    edge : float [-], optional
+        its edge at the fibers in fiber diameters, for what is known of the mesh's error.
     """
 
     settings: "ExportSettings"
@@ -43,6 +47,8 @@ class Order:
     fields: Mapping[str, Floats] = field(default_factory=dict)
     slip: "FiberSlip | None" = None
     progress: Progress = silent
+    mesher: str | None = None
+    edge: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

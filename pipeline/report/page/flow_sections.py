@@ -6,8 +6,8 @@ import math
 
 from pipeline.analytics.models.prediction import filter_of_mat, predict
 from pipeline.analytics.models.single_fiber import PRESETS
-from pipeline.analytics.sureness import sureness
 from pipeline.analytics.settings import FilterSettings, FlowSettings
+from pipeline.analytics.sureness import sureness
 from pipeline.analytics.tables.rows import comparison_tables, length, prediction_tables
 from pipeline.line.results import Results
 from pipeline.nouns.comparison import Comparison

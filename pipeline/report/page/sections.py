@@ -41,6 +41,7 @@ def mat(content: Results) -> Section | None:
             *_diameters(d),
             ("contacts of a fiber", f"{measures.contacts_per_fiber:.3g}"),
             ("orientation tensor, diagonal", f"xx {xx:.3f}, yy {yy:.3f}, zz {zz:.3f}"),
+            *_frame(measures.frame_density),
         ]
         figures.append(charts.thickness_profile(measures))
     if surface is not None:
@@ -57,6 +58,15 @@ def _diameters(d: DiameterMoments) -> list[tuple[str, str]]:
         ("fiber diameter", f"{length(d.mean)} ± {length(d.std)}, from {length(d.min)} to {length(d.max)}"),
         ("mean diameter by surface", length(d.surface_weighted)),
     ]
+
+
+def _frame(density: float | None) -> list[tuple[str, str]]:
+    """Tell how much denser the frame of the plan is than its middle, which the number of a small box carries."""
+    if density is None:
+        return []
+    words = "denser" if density > 1.0 else "less dense"
+    told = f"{density:.3g} times: the outer tenth, all around, is {abs(density - 1.0):.0%} {words} than the rest"
+    return [("solid per plan area at the frame against the middle", told)]
 
 
 def duct(content: Results) -> Section | None:

@@ -10,8 +10,11 @@ from pipeline.nouns.mesh import FaceMesh
 
 def _write(mesh: FaceMesh, folder: Path, order: Order) -> None:
     from pipeline.export.formats.openfoam.case import write_openfoam
+    from pipeline.export.formats.openfoam.readme import format_readme
 
     write_openfoam(mesh, folder, order.flow, order.sides, order.settings, order.progress, order.slip)
+    text = format_readme(order.flow.density, order.slip is not None, order.mesher, order.edge)
+    (folder / "README.md").write_text(text, encoding="ascii")
 
 
 # a case is a folder: `pipeline.export.read` finds it by its mesh, not by a suffix
