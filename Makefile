@@ -55,7 +55,7 @@ bench: setup  ## Measure what the documentation quotes: writing, engines side by
 	$(BIN)/python -m benchmarks.drag runs/bench/array array
 	$(BIN)/python -m benchmarks.drag runs/bench/default default
 
-verify: setup  ## Solve arrays and mats, and write what docs/verification.md shows (half an hour; needs OpenFOAM)
+verify: setup  ## Solve arrays, lattices and mats, and write what docs/verification.md shows (half an hour of processor time; needs OpenFOAM)
 	$(BIN)/python docs/verify.py runs/verification
 
 docs: setup  ## Build the site of docs/ into build/site, with the notebook run and the gallery drawn anew

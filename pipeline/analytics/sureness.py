@@ -10,7 +10,7 @@ def sureness(solution: Solution) -> str:
 
     Examples
     --------
-    >>> sureness(Solution(7.5, 1e-8, 1e-9, 1e-12, 0.0, 0.0, 30, True, 8.0, 1, mesh_error=(0.013, 0.008, 0.02)))
+    >>> sureness(Solution(7.5, 1e-8, 1e-9, 1e-12, 0.0, 0.0, 30, True, mesh_error=(0.013, 0.008, 0.02)))
     '7.5 Pa; this mesh +1.3 % (+0.8 to +2.0 %, measured on other mats)'
     """
     parts = []

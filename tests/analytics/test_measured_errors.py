@@ -10,7 +10,7 @@ from pipeline.analytics.measured_errors import EdgeError, measured, mesh_error, 
 from pipeline.analytics.sureness import sureness
 from pipeline.nouns.flow import Solution
 
-SOLVED = Solution(7.5, 1e-8, 1e-9, 1e-12, 0.0, 0.0, 30, True, 8.0, 1)
+SOLVED = Solution(7.5, 1e-8, 1e-9, 1e-12, 0.0, 0.0, 30, True)
 
 
 def rows(mesher: str = "lattice", solver: str = "openfoam", order: float = 2.0) -> list[EdgeError]:
