@@ -141,6 +141,8 @@ def agreement_table(runs: Sequence[MatRun], found: Sequence[EdgeError]) -> str:
     rows = []
     for seed in sorted({each.seed for each in runs}):
         of_mesher = {each.mesher: each for each in runs if each.seed == seed and each.edge == USUAL}
+        if not {"tetwild", "lattice"} <= of_mesher.keys():
+            continue
         truest, lattice = of_mesher["tetwild"], of_mesher["lattice"]
         bands = [
             (drop / (1.0 + stated[key].high), drop / (1.0 + stated[key].low))

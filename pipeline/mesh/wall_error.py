@@ -11,11 +11,10 @@ from pipeline.geometry.triangles import area_vectors
 from pipeline.mesh.distance import fiber_distance
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
-from pipeline.nouns.fidelity import FiberWalls, Fidelity
+from pipeline.nouns.fidelity import NEAREST, FiberWalls, Fidelity
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.patches import FIBERS
 
-_REACH = 1.5  # of its diameters from a fiber: a wall farther from every fiber than this is off by this much
 _STEP = 0.25  # of its diameters between the places on a fiber's axis that are looked at
 
 
@@ -45,10 +44,10 @@ def fidelity(mesh: FaceMesh, domain: FluidDomain) -> Fidelity:
     area = np.repeat(np.linalg.norm(area_vectors(points, triangles), axis=1) / 3.0, 3)
     if len(domain.pieces) == 0:
         return _beside_surface(middles.reshape(-1, 3), area, domain)
-    distance = fiber_distance(domain, _REACH * diameter)
+    distance = fiber_distance(domain, NEAREST * diameter)
     off, piece = distance.with_piece(middles.reshape(-1, 3))
     fiber = np.repeat(mesh.fiber[face], 3)
-    own = np.where(piece >= 0, off / diameter[distance.field[2][piece]], _REACH)
+    own = np.where(piece >= 0, off / diameter[distance.field[2][piece]], NEAREST)
     away = np.abs(own)
     in_air = _axis_in_air(points, triangles, domain)
     # the samples of each fiber stand together, nearest first
