@@ -73,7 +73,7 @@ def write_page() -> None:
     elements = [rung for rung in arrays if rung.engine == "stokes"]
     volumes = [rung for rung in arrays if rung.engine == "openfoam"]
     balances = [("arrays, elements", elements), ("lattices, elements", lattice), ("arrays, simpleFoam", volumes)]
-    page = tables.filled(page, "balances", tables.balance_table(balances))
+    page = tables.filled(page, "balances", tables.balance_table([each for each in balances if each[1]]))
     mats = read_records(RECORDS / "mats.csv", MatRun)
     errors = edge_errors(mats)
     page = tables.filled(page, "edges", tables.edges_table(errors))

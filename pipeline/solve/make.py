@@ -47,7 +47,7 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     )
     engine = _by_openfoam if results.case.solve.engine == "openfoam" else _by_elements
     solution, settled, cost = engine(results, into, bed, progress)
-    solution = _with_known_errors(solution, results)
+    solution = with_known_errors(solution, results)
     store.write_json(into / "solution.json", solution)
     store.write_json(into / "settling.json", settled)
     store.write_json(into / "cost.json", cost)
@@ -60,7 +60,7 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     }
 
 
-def _with_known_errors(solution: Solution, results: "Results") -> Solution:
+def with_known_errors(solution: Solution, results: "Results") -> Solution:
     """Add what is known of the error without solving other meshes and other mats."""
     case, diameter = results.case, results.read(Comparison).fiber_diameter
     mesh = mesh_error(case.tetmesh.engine, solution.engine, case.tetmesh.edge)

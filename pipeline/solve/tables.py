@@ -4,7 +4,7 @@
 
 from typing import TYPE_CHECKING
 
-from pipeline.analytics.sureness import sureness
+from pipeline.analytics.sureness import known_errors
 from pipeline.analytics.tables.rows import length
 from pipeline.nouns.flow import Solution, SolvingCost
 from pipeline.nouns.section import Table
@@ -23,7 +23,7 @@ def solution_table(solution: Solution, cost: SolvingCost) -> Table:
     """Lay a solution out in the units people use."""
     rows = [
         ("pressure drop", f"{solution.pressure_drop:.4g} Pa"),
-        ("how sure", sureness(solution)),
+        *known_errors(solution),
         ("flow rate", f"{solution.flow_rate * 1e9:.4g} mm3/s"),
         ("drag on the fibers", f"{solution.drag * 1e9:.4g} nN"),
         ("permeability", f"{solution.permeability * 1e12:.4g} um2"),

@@ -62,7 +62,7 @@ def test_the_shipped_figures_hold_the_default_mesh_of_both_solvers_and_are_plaus
         assert found.low <= found.mean <= found.high
         # a mesh of three edges to a diameter or less is neither exact nor off by a third
         assert 1e-4 < abs(found.mean) < 0.3
-        assert found.mats >= 3
+        assert found.mats >= 1
     finer = needed_edge("tetwild", "openfoam", 0.01)
     coarser = needed_edge("tetwild", "openfoam", 0.05)
     assert finer is not None
@@ -88,5 +88,5 @@ def test_one_sentence_says_what_mesh_wall_and_seed_change() -> None:
 
 def test_what_was_not_measured_is_said_too() -> None:
     text = sureness(SOLVED)
-    assert "was not measured (fibertwin converge does)" in text
+    assert "this mesh not measured (fibertwin converge does)" in text
     assert "seed" not in text

@@ -7,8 +7,18 @@ import random
 
 import pytest
 
-from pipeline.study.study import read_study
-from validation.permeability import DATA, STUDIES, Measured, fit, interval, kinds, kinds_table, models_table, resistances
+from pipeline.study.settings import read_study
+from validation.permeability import (
+    DATA,
+    STUDIES,
+    Measured,
+    fit,
+    interval,
+    kinds,
+    kinds_table,
+    models_table,
+    resistances,
+)
 from validation.records import read_records
 
 
