@@ -87,7 +87,7 @@ def pitch(lattice: str, solidity: float) -> float:
     Examples
     --------
     >>> round(pitch("crossed", 0.1), 4), round(pitch("cubic", 0.2), 4)
-    (7.9267, 6.1157)
+    (7.9267, 6.1595)
     """
     if lattice == "crossed":
         return math.sqrt(2.0 * math.pi / solidity)
