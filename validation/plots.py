@@ -23,18 +23,14 @@ def ladder_figure(arrays: Sequence[Rung], lattices: Sequence[LatticeRung]) -> "F
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(11.0, 4.2), layout="constrained")
-    for axes, (title, rungs) in zip(
-        figure.subplots(1, 3, sharey=True),
-        (
-            ("square and hexagonal arrays, elements", [r for r in arrays if r.engine == "stokes"]),
-            ("square array, simpleFoam", [r for r in arrays if r.engine == "openfoam"]),
-            ("crossed layers and cubic lattice, elements", lattices),
-        ),
-        strict=True,
-    ):
-        for each in judged(list(rungs)):
-            fine = each.fine
-            color = _COLORS[0] if fine.mesher == "tetwild" else _COLORS[1]
+    shown: dict[str, list[Rung | LatticeRung]] = {
+        "square and hexagonal arrays, elements": [rung for rung in arrays if rung.engine == "stokes"],
+        "square array, simpleFoam": [rung for rung in arrays if rung.engine == "openfoam"],
+        "crossed layers and cubic lattice, elements": list(lattices),
+    }
+    for axes, (title, rungs) in zip(figure.subplots(1, 3, sharey=True), shown.items(), strict=True):
+        for each in judged(rungs):
+            color = _COLORS[0] if each.fine.mesher == "tetwild" else _COLORS[1]
             errors = [100.0 * max(abs(rung.error), 1e-5) for rung in each.rungs]
             axes.loglog([rung.spacing for rung in each.rungs], errors, "o-", color=color, markersize=3, linewidth=0.8)
         spacings = np.array([0.15, 0.4])

@@ -35,7 +35,7 @@ def test_the_default_case_knows_its_mesh_and_its_seeds() -> None:
     assert known is not None
     assert solution.mesh_error == (known.mean, known.low, known.high)
     assert solution.seed_spread == pytest.approx(seed_spread((20.0 / 1.4) ** 2))
-    shown = dict(solution_table(solution, SolvingCost(1.0, 1)).rows)
+    shown = {row[0]: row[1] for row in solution_table(solution, SolvingCost(1.0, 1)).rows}
     assert shown["this mesh"].startswith(f"{100.0 * known.mean:+.1f} %")
     assert "±" in shown["another seed"]
 
