@@ -12,6 +12,7 @@ from typing import Annotated, Literal
 from cyclopts import App, CycloptsError, Parameter
 from rich.console import Console
 
+from pipeline.cli import completing
 from pipeline.cli.bundled import found
 from pipeline.cli.printable import printable
 from pipeline.errors import CaseError, FibertwinError
@@ -31,18 +32,21 @@ app.register_install_completion_command()
 out = Console()
 err = Console(stderr=True)
 
+CaseFile = Annotated[Path, Parameter(completer=completing.cases)]
+RunFolder = Annotated[Path, Parameter(completer=completing.runs)]
+
 WRONG_USE = 2
 """Exit code of a command line that asks for nonsense."""
 
 
 @app.command
 def run(
-    case: Path,
+    case: CaseFile,
     *,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
-    until: str | None = None,
+    until: Annotated[str | None, Parameter(completer=completing.stages)] = None,
     set_: Annotated[tuple[str, ...], Parameter(name=["--set", "-s"], negative="", consume_multiple=False)] = (),
-    force: Annotated[tuple[str, ...], Parameter(negative="", consume_multiple=False)] = (),
+    force: Annotated[tuple[str, ...], Parameter(negative="", consume_multiple=False, completer=completing.stages)] = (),
     dry_run: Annotated[bool, Parameter(negative="")] = False,
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
     quiet: Annotated[bool, Parameter(negative="")] = False,
@@ -81,7 +85,7 @@ def run(
 
 @app.command
 def solve(
-    run: Path,
+    run: RunFolder,
     *,
     set_: Annotated[tuple[str, ...], Parameter(name=["--set", "-s"], negative="", consume_multiple=False)] = (),
     again: Annotated[bool, Parameter(negative="")] = False,
@@ -111,9 +115,12 @@ def solve(
 
 @app.command
 def export(
-    run: Path,
+    run: RunFolder,
     *,
-    format_: Annotated[tuple[str, ...], Parameter(name=["--format", "-f"], negative="", consume_multiple=False)] = (),
+    format_: Annotated[
+        tuple[str, ...],
+        Parameter(name=["--format", "-f"], negative="", consume_multiple=False, completer=completing.formats),
+    ] = (),
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     set_: Annotated[tuple[str, ...], Parameter(name=["--set", "-s"], negative="", consume_multiple=False)] = (),
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
@@ -144,7 +151,7 @@ def export(
 
 @app.command
 def converge(
-    case: Path,
+    case: CaseFile,
     *,
     seeds: int = 1,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
@@ -252,9 +259,11 @@ def quality(
 
 @app.command
 def predict(
-    source: Path | None = None,
+    source: Annotated[Path | None, Parameter(completer=completing.cases)] = None,
     *,
-    from_: Annotated[tuple[Path, ...], Parameter(name="--from", negative="", consume_multiple=False)] = (),
+    from_: Annotated[
+        tuple[Path, ...], Parameter(name="--from", negative="", consume_multiple=False, completer=completing.runs)
+    ] = (),
     solidity: str | None = None,
     thickness: str | None = None,
     fiber_diameter: str | None = None,
@@ -262,8 +271,8 @@ def predict(
     particle_diameter: str | None = None,
     particle_spread: str | None = None,
     temperature: str | None = None,
-    preset: str | None = None,
-    pressure_model: str | None = None,
+    preset: Annotated[str | None, Parameter(completer=completing.presets)] = None,
+    pressure_model: Annotated[str | None, Parameter(completer=completing.pressure_models)] = None,
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
     plot: Path | None = None,
 ) -> None:
@@ -324,7 +333,7 @@ def predict(
 
 @app.command
 def tune(
-    case: Path,
+    case: CaseFile,
     *,
     target: Annotated[tuple[str, ...], Parameter(negative="", consume_multiple=False)] = (),
     seeds: int = 8,
@@ -505,7 +514,7 @@ def twin(
 
 @app.command
 def micrograph(
-    source: Path,
+    source: CaseFile,
     into: Path,
     *,
     pixel: str | None = None,
@@ -598,7 +607,7 @@ def tomography(
 
 @app.command
 def study(
-    study: Path,
+    study: Annotated[Path, Parameter(completer=completing.studies)],
     *,
     workers: int | None = None,
     scheduler: str | None = None,
@@ -632,7 +641,7 @@ def study(
 
 @app.command
 def report(
-    *runs: Path,
+    *runs: RunFolder,
     pdf: Annotated[bool, Parameter(negative="")] = False,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
@@ -665,7 +674,13 @@ def report(
 
 
 @app.command
-def view(run: Path, *, scene: str | None = None, screenshot: Path | None = None, html: Path | None = None) -> None:
+def view(
+    run: RunFolder,
+    *,
+    scene: Annotated[str | None, Parameter(completer=completing.scenes)] = None,
+    screenshot: Path | None = None,
+    html: Path | None = None,
+) -> None:
     """Look at a run's geometry and mesh in a window; without a screen, draw every view into RUN/pictures.
 
     Parameters
@@ -689,7 +704,11 @@ def view(run: Path, *, scene: str | None = None, screenshot: Path | None = None,
 
 
 @app.command
-def init(file: Path = Path("case.toml"), *, generator: str = "layered") -> None:
+def init(
+    file: Path = Path("case.toml"),
+    *,
+    generator: Annotated[str, Parameter(completer=completing.generators)] = "layered",
+) -> None:
     """Write a case file with every key, its meaning and its default, to fill in; never over a file that is there.
 
     Parameters

@@ -16,7 +16,7 @@ from pipeline.line.places import disk_trouble_explained
 from pipeline.mat.settings import ArraySettings, BoxSettings, FileSettings, LayeredSettings, Stop
 
 _WIDTH = 110
-_GENERATORS: dict[str, type[BaseModel]] = {
+GENERATORS: dict[str, type[BaseModel]] = {
     "layered": LayeredSettings,
     "box": BoxSettings,
     "array": ArraySettings,
@@ -64,14 +64,14 @@ def write_first_case(path: Path, generator: str) -> None:
 
 def first_case(generator: str) -> str:
     """Give the text of a case file with every key, those with a default behind a ``#``."""
-    if generator not in _GENERATORS:
-        raise CaseError(f"there is no generator {generator!r}; the generators are {', '.join(_GENERATORS)}")
+    if generator not in GENERATORS:
+        raise CaseError(f"there is no generator {generator!r}; the generators are {', '.join(GENERATORS)}")
     lines = [
-        f"# {summary(_GENERATORS[generator])[:-1]}: a first case, made by fibertwin init.",
+        f"# {summary(GENERATORS[generator])[:-1]}: a first case, made by fibertwin init.",
         "# Which pressure drop does it have? Keys behind a # show what holds when they are left out.",
     ]
     for key in keys(Case):
-        settings = _GENERATORS[generator] if key.name == "mat" else key.tables[0]
+        settings = GENERATORS[generator] if key.name == "mat" else key.tables[0]
         lines += ["", "", *_comment(key.meaning), f"[{key.name}]", *_table(settings, generator)]
         if key.name != "mat":
             lines += _nested_tables(key.name, settings)
@@ -104,7 +104,7 @@ def _table(settings: type[BaseModel], generator: str) -> Iterator[str]:
             continue
         yield ""
         if key.name == "generator":
-            yield from _comment(f"{key.meaning} The generators are {', '.join(_GENERATORS)}.")
+            yield from _comment(f"{key.meaning} The generators are {', '.join(GENERATORS)}.")
             yield f'generator = "{generator}"'
             continue
         yield from _comment(f"{key.meaning} Takes: {key.takes}.")
