@@ -216,6 +216,48 @@ def permeability(
 
 
 @app.command
+def tiles(
+    case: Path,
+    *,
+    tiles: str = "2x2",
+    workers: int | None = None,
+    scheduler: str | None = None,
+    out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
+    set_: Annotated[tuple[str, ...], Parameter(name=["--set", "-s"], negative="", consume_multiple=False)] = (),
+    as_json: Annotated[bool, Parameter(name="--json", negative="")] = False,
+    quiet: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
+    """Mesh a case in tiles by several processes, and write it as a case of OpenFOAM that is decomposed already.
+
+    No process ever holds more than one tile, and no file more than one. The tiles fit each other face by face, and each
+    is judged with its neighbors beside it. The engine has to be the lattice.
+
+    Parameters
+    ----------
+    case
+        The case file (TOML), or the name of a bundled case.
+    tiles
+        How many along x and y.
+    workers
+        Processes of this machine, as many as it has cores if left out; or jobs of SLURM.
+    scheduler
+        Address of a running dask scheduler, like ``tcp://host:8786``, whose workers see the folder under the same path;
+        or ``slurm``.
+    out
+        Folder of the run, which gets a folder ``tiles``; ``runs/<name of the case file>`` if left out.
+    set_
+        Override a key of the case file: ``--set tetmesh.edge=0.8``. May be repeated.
+    as_json
+        Print tiles.json instead of a table.
+    quiet
+        Print nothing but errors.
+    """
+    from pipeline.cli.tiling import tile_case
+
+    tile_case(found(case), out or Path("runs") / case.stem, tiles, workers, scheduler, set_, as_json, quiet)
+
+
+@app.command
 def quality(
     mesh: Path,
     *,

@@ -37,17 +37,10 @@ def fidelity(mesh: FaceMesh, domain: FluidDomain) -> Fidelity:
     Fidelity
     """
     diameter = 2.0 * domain.radius
-    which = mesh.patch(FIBERS)
-    points, triangles, _, face = fan(mesh.points, mesh.corners, mesh.offsets[which.start : which.stop + 1])
-    corners = points[triangles]
-    middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
-    area = np.repeat(np.linalg.norm(area_vectors(points, triangles), axis=1) / 3.0, 3)
     if len(domain.pieces) == 0:
-        return _beside_surface(middles.reshape(-1, 3), area, domain)
-    distance = fiber_distance(domain, NEAREST * diameter)
-    off, piece = distance.with_piece(middles.reshape(-1, 3))
-    fiber = np.repeat(mesh.fiber[face], 3)
-    own = np.where(piece >= 0, off / diameter[distance.field[2][piece]], NEAREST)
+        points, triangles, _ = _walls_of(mesh)
+        return _beside_surface(*_samples(points, triangles), domain)
+    points, triangles, fiber, own, area = _sampled(mesh, domain)
     away = np.abs(own)
     in_air = _axis_in_air(points, triangles, domain)
     # the samples of each fiber stand together, nearest first
@@ -62,6 +55,53 @@ def fidelity(mesh: FaceMesh, domain: FluidDomain) -> Fidelity:
             for k, (begin, end) in enumerate(itertools.pairwise(starts))
         ),
     )
+
+
+def wall_deviation(mesh: FaceMesh, domain: FluidDomain) -> tuple[float, float, float]:
+    """Give how far the walls of a mesh, or of a part of one, stand off the fibers, each in their own diameters.
+
+    Parameters
+    ----------
+    mesh : FaceMesh
+        Whose wall faces name their fiber.
+    domain : FluidDomain
+        Whose fibers have axes.
+
+    Returns
+    -------
+    mean, typical, largest : float [-]
+        As in `Fidelity`; 0 without walls.
+    """
+    _, triangles, _, own, area = _sampled(mesh, domain)
+    if not len(triangles):
+        return 0.0, 0.0, 0.0
+    away = np.abs(own)
+    return float(away @ area / area.sum()), _within(away, area, 0.99), float(away.max())
+
+
+def _sampled(mesh: FaceMesh, domain: FluidDomain) -> tuple[Floats, Ints, Ints, Floats, Floats]:
+    """Sample the walls: their points and triangles; fiber, distance in diameters, and area [m2] of each sample."""
+    diameter = 2.0 * domain.radius
+    points, triangles, face = _walls_of(mesh)
+    places, area = _samples(points, triangles)
+    distance = fiber_distance(domain, NEAREST * diameter)
+    off, piece = distance.with_piece(places)
+    own = np.where(piece >= 0, off / diameter[distance.field[2][piece]], NEAREST)
+    return points, triangles, np.repeat(mesh.fiber[face], 3), own, area
+
+
+def _walls_of(mesh: FaceMesh) -> tuple[Floats, Ints, Ints]:
+    """Points and triangles of the walls, and the face of the patch that each triangle is of."""
+    which = mesh.patch(FIBERS)
+    points, triangles, _, face = fan(mesh.points, mesh.corners, mesh.offsets[which.start : which.stop + 1])
+    return points, triangles, face
+
+
+def _samples(points: Floats, triangles: Ints) -> tuple[Floats, Floats]:
+    """Three places on each triangle, (k, 3) [m], and the area that each stands for, (k,) [m2]."""
+    corners = points[triangles]
+    middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
+    return middles.reshape(-1, 3), np.repeat(np.linalg.norm(area_vectors(points, triangles), axis=1) / 3.0, 3)
 
 
 def _walls(fiber: int, diameter: float, off: Floats, area: Floats, in_air: float) -> FiberWalls:

@@ -8,10 +8,9 @@ from pipeline.geometry.polyhedra import polygons
 from pipeline.mesh.distance import fiber_distance
 from pipeline.nouns.arrays import Ints
 from pipeline.nouns.domain import FluidDomain
+from pipeline.nouns.fidelity import NEAREST
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.patches import FIBERS
-
-_REACH = 1.5  # of its diameters from a fiber: a face farther from every fiber than this stands for none
 
 
 def wall_fibers(mesh: FaceMesh, domain: FluidDomain) -> Ints:
@@ -33,7 +32,7 @@ def wall_fibers(mesh: FaceMesh, domain: FluidDomain) -> Ints:
     if len(domain.pieces) == 0:
         # a medium that is there as a surface is one fiber, whose axis nobody knows
         return np.zeros(len(centers), np.int64)
-    distance = fiber_distance(domain, _REACH * 2.0 * domain.radius)
+    distance = fiber_distance(domain, NEAREST * 2.0 * domain.radius)
     _, piece = distance.with_piece(centers)
     fiber: Ints = np.where(piece >= 0, distance.field[2][piece], -1)
     return fiber

@@ -19,7 +19,12 @@ from pipeline.nouns.patches import FIBERS, PATCHES
 WALL = -1 - PATCHES.index(FIBERS)
 """What stands for a neighbor at a wall; at patch number k it is -1 - k."""
 INTERFACE = -1 - len(PATCHES)
-"""What stands for a neighbor where a part ends and the mesh goes on: no boundary, and its triangles stay whole."""
+"""What stands for a neighbor where a part ends and the mesh goes on: no boundary, and its triangles stay whole.
+
+A number below it says so too, and that nobody puts the part back: the cells there have to stay.
+"""
+LATER = INTERFACE - 1
+"""Of those numbers, the one that tells that both sides are worked on once more: what is wrong near there can wait."""
 
 
 def on_boundary(across: Cells) -> Bools:
@@ -120,11 +125,29 @@ class WorkingMesh:
         number = (np.cumsum(used) - 1).astype(np.int32)
         return replace(self, points=self.points[used], planes=self.planes[used], tets=number[self.tets])
 
-    def one_part(self) -> "WorkingMesh":
-        """Keep the largest part that hangs together through faces."""
+    def main_cells(self) -> Bools:
+        """Tell the cells that hang together: the largest part, or all parts that go on beyond an interface."""
         from pipeline.geometry.adjacency import largest_part_of
+        from pipeline.geometry.parts import parts
 
-        return self.without(~largest_part_of(self.across))
+        beyond = (self.across <= INTERFACE).any(axis=1)
+        if not beyond.any():
+            return largest_part_of(self.across)
+        cell, side = np.nonzero(self.across >= 0)
+        number, part = parts(cell, self.across[cell, side].astype(np.int64), self.cells)
+        goes_on = np.zeros(number, np.bool_)
+        goes_on[part[beyond]] = True
+        return np.asarray(goes_on[part])
+
+    def one_part(self) -> "WorkingMesh":
+        """Keep the largest part that hangs together through faces, or all that go on beyond an interface."""
+        return self.without(~self.main_cells())
+
+    def held_vertices(self) -> Bools:
+        """Tell the vertices that stay, since the cells behind an interface do not know what happens here."""
+        held = np.zeros(len(self.points), np.bool_)
+        held[self.tets[(self.across <= INTERFACE).any(axis=1)]] = True
+        return held
 
     def part(self, cells: Ints) -> "Part":
         """Take some cells out, to be worked on alone.

@@ -11,7 +11,7 @@ import numpy as np
 from pipeline.geometry.parts import parts
 from pipeline.geometry.polyhedra import Polyhedra
 from pipeline.machine import cores
-from pipeline.nouns.arrays import Floats
+from pipeline.nouns.arrays import Bools, Floats
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.quality import Metric, QualityReport
 from pipeline.openfoam import metrics as definitions
@@ -67,7 +67,9 @@ _DEFINITIONS = {
 }  # fmt: skip
 
 
-def judge(mesh: FaceMesh, settings: QualitySettings | None = None, progress: Progress = silent) -> QualityReport:
+def judge(
+    mesh: FaceMesh, settings: QualitySettings | None = None, progress: Progress = silent, own: Bools | None = None
+) -> QualityReport:
     """Measure a mesh by OpenFOAM's definitions and say whether it may go to a solver.
 
     Parameters
@@ -76,23 +78,26 @@ def judge(mesh: FaceMesh, settings: QualitySettings | None = None, progress: Pro
     settings : QualitySettings
         The limits; those of `checkMesh` by default.
     progress : Progress
+    own : (cells,) bool array, optional
+        Cells to look at, with all their faces, where others stand beside them that are looked at elsewhere; all unless
+        given.
 
     Returns
     -------
     QualityReport
         A metric that the mesh has nothing to measure with (one cell has no internal face) is left out.
     """
-    return judge_with_fields(mesh, settings, progress)[0]
+    return judge_with_fields(mesh, settings, progress, own)[0]
 
 
 def judge_with_fields(
-    mesh: FaceMesh, settings: QualitySettings | None = None, progress: Progress = silent
+    mesh: FaceMesh, settings: QualitySettings | None = None, progress: Progress = silent, own: Bools | None = None
 ) -> tuple[QualityReport, dict[str, Floats]]:
     """Judge a mesh, and give the values that the report sums up cell by cell: each metric is computed once.
 
     Parameters
     ----------
-    mesh, settings, progress
+    mesh, settings, progress, own
         As `judge` takes them.
 
     Returns
@@ -112,7 +117,8 @@ def judge_with_fields(
         definition = _DEFINITIONS[name]
         values = definition.compute(mesh, shape)
         limit = getattr(settings, name, definition.fixed_limit)
-        metric = _summary(name, definition, values, limit, shape) if len(values) else None
+        chosen = _chosen(mesh, definition.where, own)
+        metric = _summary(name, definition, values, limit, shape, chosen) if len(values) else None
         return metric, _per_cell(mesh, definition, values) if name in QualitySettings.model_fields else None
 
     for done, (name, (metric, field)) in enumerate(zip(_DEFINITIONS, _by_all_cores(measured, mesh), strict=True)):
@@ -184,7 +190,25 @@ def _worst_of_faces(mesh: FaceMesh, values: Floats, worst_is: str) -> Floats:
     return np.where(np.isfinite(worst), worst, 0.0 if worst_is == "largest" else 1.0)
 
 
-def _summary(name: str, definition: _Definition, values: Floats, limit: float | None, shape: Polyhedra) -> Metric:
+def _chosen(mesh: FaceMesh, where: str, own: Bools | None) -> Bools | None:
+    """Tell the cells or faces that count."""
+    if own is None or where == "cells":
+        return own
+    of_own = own[mesh.owner]
+    of_own[: mesh.internal] |= own[mesh.neighbour]
+    return of_own[: mesh.internal] if where == "internal faces" else of_own
+
+
+def _summary(
+    name: str,
+    definition: _Definition,
+    values: Floats,
+    limit: float | None,
+    shape: Polyhedra,
+    chosen: Bools | None,
+) -> Metric:
+    rows = np.arange(len(values)) if chosen is None else np.flatnonzero(chosen)
+    values = values[rows]
     largest = definition.worst_is == "largest"
     if limit is None:
         over = 0
@@ -210,7 +234,7 @@ def _summary(name: str, definition: _Definition, values: Floats, limit: float | 
         limit=limit,
         worst_is=definition.worst_is,
         over_limit=over,
-        worst=tuple((int(k), float(values[k]), _place(places[k])) for k in ranks),
+        worst=tuple((int(rows[k]), float(values[k]), _place(places[rows[k]])) for k in ranks),
         source=definition.source,
     )
 

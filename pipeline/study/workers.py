@@ -47,7 +47,7 @@ def carried_out(
     """
     from distributed import as_completed
 
-    with _client(workers, scheduler) as client:
+    with client_of(workers, scheduler) as client:
         # a task is named for its run, or dask would take two studies' tasks for one
         futures = {client.submit(carry_out, task, key=f"{task.name}-{task.key}", retries=0): task for task in tasks}
         for future in as_completed(futures):
@@ -57,7 +57,19 @@ def carried_out(
 
 
 @contextlib.contextmanager
-def _client(workers: int | None, scheduler: str | None) -> "Iterator[Client]":
+def client_of(workers: int | None, scheduler: str | None) -> "Iterator[Client]":
+    """Give what carries out tasks: processes of this machine, jobs of SLURM, or the workers of a running scheduler.
+
+    Parameters
+    ----------
+    workers, scheduler
+        As in `carried_out`.
+
+    Raises
+    ------
+    CaseError, StageError
+        As in `carried_out`.
+    """
     import dask
     from distributed import Client, LocalCluster
 

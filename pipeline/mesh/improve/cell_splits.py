@@ -44,7 +44,7 @@ def _around(tets: Cells, across: Cells, cell: int, low: int, high: int, found: C
             if beyond == cell:
                 return count  # all around
             if beyond < 0:
-                if beyond == INTERFACE:
+                if beyond <= INTERFACE:
                     return 0
                 break
             ahead = -1

@@ -48,13 +48,7 @@ def finished(
     from pipeline.geometry.faces import tet_faces
 
     raw_error = domain.volume_error(float(cell_volumes(mesh.points, mesh.tets).sum()))
-    filled, faulty = 0.0, 0
-    for turn in range(_ROUNDS):
-        progress("repairing the worst cells", 0.6 + 0.15 * turn)
-        mesh, faulty, air = repaired(mesh, progress)
-        filled += air
-        progress("moving the walls onto the fibers", 0.7 + 0.15 * turn)
-        mesh = on_fibers(mesh)
+    mesh, faulty, filled = improved(mesh, progress)
     mesh = mesh.compacted()
     volume = cell_volumes(mesh.points, mesh.tets)
     _check_volumes(mesh, volume, settings)
@@ -73,6 +67,18 @@ def finished(
         mesher_peak_memory=cost.peak_memory,
     )
     return faces, measures
+
+
+def improved(mesh: WorkingMesh, progress: Progress) -> tuple[WorkingMesh, int, float]:
+    """Repair cells and move walls onto their fibers: the mesh, cells that stay faulty, and the air filled [m3]."""
+    filled, faulty = 0.0, 0
+    for turn in range(_ROUNDS):
+        progress("repairing the worst cells", 0.6 + 0.15 * turn)
+        mesh, faulty, air = repaired(mesh, progress)
+        filled += air
+        progress("moving the walls onto the fibers", 0.7 + 0.15 * turn)
+        mesh = on_fibers(mesh)
+    return mesh, faulty, filled
 
 
 def _check_patches(mesh: WorkingMesh, domain: FluidDomain, settings: TetmeshSettings) -> None:

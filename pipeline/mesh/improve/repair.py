@@ -9,7 +9,7 @@ import numpy as np
 
 from pipeline.mesh.improve.crevices import at_walls, in_crevice
 from pipeline.mesh.improve.split import split_corners, split_longest
-from pipeline.mesh.working_mesh import WorkingMesh
+from pipeline.mesh.working_mesh import INTERFACE, LATER, WorkingMesh
 from pipeline.nouns.arrays import Bools
 from pipeline.nouns.patches import DUCT
 from pipeline.progress import Progress, silent
@@ -18,6 +18,7 @@ _FILLINGS = 8  # rounds of smoothing and filling crevices
 _PATIENCE = 3  # rounds before cells that cannot be mended are filled though a vertex of theirs could move
 _RINGS = 3  # of cells around the faulty ones that take part
 _PASSES = 8  # over the whole mesh: what is filled may leave corners elsewhere
+_WAITING = 2  # rings of cells at the rim of a piece that are repaired with the next
 _NONE = np.empty(0, np.int64)
 
 
@@ -39,11 +40,12 @@ def repaired(mesh: WorkingMesh, progress: Progress = silent) -> tuple[WorkingMes
         Air in crevices that was given to the fibers.
     """
     # numba takes half a second to load, which no refused case file should cost
-    from pipeline.geometry.adjacency import largest_part_of, ring
+    from pipeline.geometry.adjacency import ring
     from pipeline.mesh.improve.smooth import faulty_cells, smoothed
 
     # moves alone mend nearly all: what is filled or split later is looked for around the few cells that are left
     mesh, faulty = smoothed(split_corners(mesh.one_part()), _NONE)
+    faulty &= ~_can_wait(mesh)
     filled = 0.0
     for _ in range(_PASSES):
         near = faulty | (mesh.boundary_faces() > 1)
@@ -62,8 +64,9 @@ def repaired(mesh: WorkingMesh, progress: Progress = silent) -> tuple[WorkingMes
         faulty = np.zeros(mesh.cells, np.bool_)
         faulty[here] = faulty_cells(mesh, here)
         if air > 0.0:
-            whole = largest_part_of(mesh.across)
+            whole = mesh.main_cells()
             mesh, faulty = mesh.without(~whole), faulty[whole]
+        faulty &= ~_can_wait(mesh)
     return mesh, int(faulty.sum()), filled
 
 
@@ -77,6 +80,7 @@ def _repaired_part(mesh: WorkingMesh) -> tuple[WorkingMesh, float]:
     loose = _NONE
     for filling in range(_FILLINGS):
         mesh, faulty = smoothed(split_corners(mesh), loose)
+        faulty &= ~_can_wait(mesh)
         volume = cell_volumes(mesh.points, mesh.tets)
         # a flat cell is worse than any number of merely bad ones
         count = int(faulty.sum()) + mesh.cells * int((volume <= 0.0).sum())
@@ -86,7 +90,7 @@ def _repaired_part(mesh: WorkingMesh) -> tuple[WorkingMesh, float]:
             break
         stuck = filling >= _PATIENCE
         # away from the fibers nothing is a crevice: a filled cell at the inlet of a coarse mesh doubled a pressure drop
-        crevice = in_crevice(mesh, faulty, stuck) & at_walls(mesh)
+        crevice = in_crevice(mesh, faulty, stuck) & at_walls(mesh) & ~(mesh.across < INTERFACE).any(axis=1)
         if mesh.freedom.cyclic:
             # what were filled or split on one side would have no partner opposite
             at_side = _on_sides(mesh)[mesh.tets].sum(axis=1)
@@ -98,6 +102,17 @@ def _repaired_part(mesh: WorkingMesh) -> tuple[WorkingMesh, float]:
         if stuck and faulty.any():
             mesh = split_longest(mesh, faulty)
     return best
+
+
+def _can_wait(mesh: WorkingMesh) -> Bools:
+    """Tell the cells so near to what is repaired later that neither splitting nor filling is called for yet."""
+    from pipeline.geometry.adjacency import ring
+
+    near = (mesh.across == LATER).any(axis=1)
+    if near.any():
+        for _ in range(_WAITING):
+            near = ring(mesh.tets, near, len(mesh.points))
+    return np.asarray(near)
 
 
 def _on_sides(mesh: WorkingMesh) -> Bools:

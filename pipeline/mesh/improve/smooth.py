@@ -123,7 +123,7 @@ def _indeterminacy(points: Floats, tets: Cells, across: Cells, cell: int) -> flo
     total = 0.0
     xx = xy = xz = yy = yz = zz = 0.0
     for side in range(4):
-        if across[cell, side] < 0:
+        if INTERFACE <= across[cell, side] < 0:
             continue
         a = _corner(points, tets, cell, FACES[side, 0])
         b = _minus(_corner(points, tets, cell, FACES[side, 1]), a)
@@ -367,8 +367,7 @@ def _bounds(mesh: WorkingMesh, loose: Ints) -> tuple[Floats, Floats, Floats]:
     # where a crevice was filled the wall is no fiber's: its vertices may move
     loose = np.intersect1d(loose, on_wall)
     off[loose] = np.maximum(along[loose], off[loose])
-    # the cells behind the interface of a part do not know what happens here
-    off[mesh.tets[(mesh.across == INTERFACE).any(axis=1)]] = 0.0
+    off[mesh.held_vertices()] = 0.0
     return wall_normals(mesh.points, walls), off, along
 
 

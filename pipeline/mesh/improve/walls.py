@@ -49,6 +49,7 @@ def on_fibers(mesh: WorkingMesh) -> WorkingMesh:
     movable = np.zeros(len(mesh.points), dtype=bool)
     movable[walls] = True
     movable[walls[~own]] = False
+    movable &= ~mesh.held_vertices()
     free = mesh.freedom.free_axes(mesh.planes)
     # only cells with a vertex that moves change, and only faces of these can become faulty
     near = _with_neighbors(mesh, touching(mesh.tets, movable))

@@ -60,20 +60,100 @@ def write_openfoam(
         (folder / part).mkdir(parents=True, exist_ok=True)
     types = {patch.name: _patch_type(mesh, patch, sides) for patch in mesh.patches}
     write_poly_mesh(mesh, folder / "constant/polyMesh", types, settings.encoding)
-    _write(folder / "0/U", _velocity(types, flow, slip.condition(mesh) if slip else "type noSlip;"))
-    _write(folder / "0/p", _pressure(types))
-    if len(mesh.fiber):
-        _write(folder / "0" / FIBER, _fibers(types, mesh))
+    _write_fields(mesh, folder / "0", types, flow, slip, with_fibers=len(mesh.fiber) > 0)
+    _write_dictionaries(folder, flow, sides, settings, format_decompose(2))
+    _write_script(folder / "Allrun", foam.format_allrun(flow, settings.dialect))
+    _write_script(folder / "Allclean", foam.ALLCLEAN)
+
+
+def write_processor(
+    mesh: FaceMesh,
+    folder: Path,
+    number: int,
+    neighbors: tuple[int, ...],
+    flow: Flow,
+    sides: str,
+    settings: ExportSettings,
+    slip: FiberSlip | None = None,
+) -> None:
+    """Write one tile of a mesh as OpenFOAM's `decomposePar` leaves what one process has.
+
+    Parameters
+    ----------
+    mesh : FaceMesh
+        With all patches of the duct, its planes exactly flat, and then one toward each neighbor.
+    folder : Path
+        Of the whole case, made if it is not there: the tile goes into its `processorN`.
+    number : int
+        Of the tile, from 0.
+    neighbors : tuple of int
+        The tiles that it borders on, in the order of their patches.
+    flow : Flow
+    sides : "symmetry" or "slip"
+        What the sides are to the solver.
+    settings : ExportSettings
+    slip : FiberSlip, optional
+        How far the air slips along the fibers; it stands still on them without.
+    """
+    place = folder / f"processor{number}"
+    for part in ("0", "constant/polyMesh"):
+        (place / part).mkdir(parents=True, exist_ok=True)
+    plane = "type symmetryPlane;" if sides == "symmetry" else "type patch;"
+    types = {
+        patch.name: "type wall;" if patch.name == FIBERS else plane if patch.name in SIDES else "type patch;"
+        for patch in mesh.patches
+    }
+    for patch, other in zip(mesh.patches[-len(neighbors) :] if neighbors else (), neighbors, strict=True):
+        types[patch.name] = (
+            "type processor; inGroups 1(processor); matchTolerance 0.0001; transform unknown; "
+            f"myProcNo {number}; neighbProcNo {other};"
+        )
+    write_poly_mesh(mesh, place / "constant/polyMesh", types, settings.encoding)
+    _write_fields(mesh, place / "0", types, flow, slip, with_fibers=True)
+
+
+def write_around_processors(folder: Path, tiles: int, flow: Flow, sides: str, settings: ExportSettings) -> None:
+    """Write what the processes of a decomposed case share: dictionaries and scripts.
+
+    Parameters
+    ----------
+    folder : Path
+    tiles : int
+        Number of processes.
+    flow : Flow
+    sides : "symmetry" or "slip"
+    settings : ExportSettings
+    """
+    for part in ("constant", "system"):
+        (folder / part).mkdir(parents=True, exist_ok=True)
+    # it says how many there are; nobody asks how they came about
+    _write_dictionaries(folder, flow, sides, settings, format_decompose(tiles))
+    _write_script(folder / "Allrun", foam.format_allrun_in_tiles(flow, tiles, settings.dialect))
+    _write_script(folder / "Allclean", foam.ALLCLEAN_IN_TILES)
+
+
+def _write_fields(
+    mesh: FaceMesh, place: Path, types: dict[str, str], flow: Flow, slip: FiberSlip | None, with_fibers: bool
+) -> None:
+    _write(place / "U", _velocity(types, flow, slip.condition(mesh) if slip else "type noSlip;"))
+    _write(place / "p", _pressure(types))
+    if with_fibers:
+        _write(place / FIBER, _fibers(types, mesh))
+
+
+def _write_dictionaries(folder: Path, flow: Flow, sides: str, settings: ExportSettings, decomposition: str) -> None:
     for name, text in foam.format_constant(flow, settings.dialect).items():
         _write(folder / "constant" / name, text)
     _write(folder / "system/controlDict", foam.format_control_dict(flow, settings.dialect))
     _write(folder / "system/fvSchemes", foam.format_fv_schemes(cyclic=sides == "cyclic"))
     _write(folder / "system/fvSolution", foam.format_fv_solution())
-    _write(folder / "system/decomposeParDict", format_decompose(2))
+    _write(folder / "system/decomposeParDict", decomposition)
     _write(folder / "case.foam", "")
-    for name, script in (("Allrun", foam.format_allrun(flow, settings.dialect)), ("Allclean", foam.ALLCLEAN)):
-        _write(folder / name, script)
-        (folder / name).chmod(0o755)
+
+
+def _write_script(path: Path, text: str) -> None:
+    _write(path, text)
+    path.chmod(0o755)
 
 
 def _write(path: Path, text: str) -> None:

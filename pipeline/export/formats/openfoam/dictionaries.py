@@ -232,7 +232,7 @@ def format_field(name: str, kind: str, dimensions: str, internal: str, boundary:
 
 
 _ALLRUN = """#!/bin/sh
-# Checks the mesh and runs the solver: ./Allrun [cores]
+# Checks the mesh and runs the solver: USE
 cd "${0%/*}" || exit 1
 case $PWD in *[!A-Za-z0-9_./+-]*)
     echo "OpenFOAM cannot take this path: $PWD"
@@ -243,7 +243,6 @@ esac
 if [ -z "$WM_PROJECT_DIR" ] && [ -d /usr/share/openfoam ]; then
     export WM_PROJECT_DIR=/usr/share/openfoam
 fi
-cores=${1:-1}
 
 run() {
     name=$1; shift
@@ -255,18 +254,7 @@ run() {
     fi
 }
 
-run checkMesh checkMesh
-# checkMesh ends with 0 even when checks fail
-grep -q "Mesh OK" log.checkMesh || echo "warning: checkMesh is not content, see log.checkMesh"
-if [ "$cores" -gt 1 ]; then
-    sed -i -e "s/^numberOfSubdomains .*/numberOfSubdomains $cores;/" -e "s/n  *(1 1 .*/n       (1 1 $cores);/" \\
-        system/decomposeParDict
-    run decomposePar decomposePar -force
-    run SOLVER ${MPIRUN:-mpirun} -np "$cores" env PWD="$PWD" SOLVER -parallel
-    run reconstructPar reconstructPar -latestTime
-else
-    run SOLVER SOLVER
-fi
+RUNS
 for value in inletPressure inletFlow outletFlow; do
     echo "$value: $(tail -q -n 1 postProcessing/$value/*/surfaceFieldValue*.dat | tail -n 1)"
 done
@@ -276,14 +264,51 @@ drop=$(tail -q -n 1 postProcessing/inletPressure/*/surfaceFieldValue*.dat | tail
 echo "pressure drop: $drop Pa (inletPressure above is in m2/s2, over the air's density of DENSITY kg/m3)"
 """
 
+_JUDGE = """# checkMesh ends with 0 even when checks fail
+grep -q "Mesh OK" log.checkMesh || echo "warning: checkMesh is not content, see log.checkMesh"
+"""
+
+_RUNS = """cores=${1:-1}
+run checkMesh checkMesh
+JUDGE
+if [ "$cores" -gt 1 ]; then
+    sed -i -e "s/^numberOfSubdomains .*/numberOfSubdomains $cores;/" -e "s/n  *(1 1 .*/n       (1 1 $cores);/" \\
+        system/decomposeParDict
+    run decomposePar decomposePar -force
+    run SOLVER ${MPIRUN:-mpirun} -np "$cores" env PWD="$PWD" SOLVER -parallel
+    run reconstructPar reconstructPar -latestTime
+else
+    run SOLVER SOLVER
+fi"""
+
+_RUNS_IN_TILES = """run checkMesh ${MPIRUN:-mpirun} -np TILES env PWD="$PWD" checkMesh -parallel
+JUDGE
+run SOLVER ${MPIRUN:-mpirun} -np TILES env PWD="$PWD" SOLVER -parallel"""
+
 
 def format_allrun(flow: Flow, dialect: Dialect = "com") -> str:
     """Script that checks the mesh and runs the case, on one core or more, and tells the pressure drop in Pa."""
-    return _ALLRUN.replace("SOLVER", SOLVER[dialect]).replace("DENSITY", repr(flow.density))
+    return _script("./Allrun [cores]", _RUNS, flow, dialect)
+
+
+def format_allrun_in_tiles(flow: Flow, tiles: int, dialect: Dialect = "com") -> str:
+    """Script for a case that is decomposed already: a process for each tile."""
+    return _script("./Allrun", _RUNS_IN_TILES.replace("TILES", str(tiles)), flow, dialect)
+
+
+def _script(use: str, runs: str, flow: Flow, dialect: Dialect) -> str:
+    text = _ALLRUN.replace("USE", use).replace("RUNS", runs).replace("JUDGE\n", _JUDGE)
+    return text.replace("SOLVER", SOLVER[dialect]).replace("DENSITY", repr(flow.density))
 
 
 ALLCLEAN = """#!/bin/sh
 # Removes what a run left behind: times, logs and the parts of a parallel run
 cd "${0%/*}" || exit 1
 rm -rf [1-9]* processor[0-9]* postProcessing log.* stop
+"""
+
+ALLCLEAN_IN_TILES = """#!/bin/sh
+# Removes what a run left behind, times and logs; the mesh stays, since it is nowhere else
+cd "${0%/*}" || exit 1
+rm -rf [1-9]* processor[0-9]*/[1-9]* postProcessing log.* stop
 """

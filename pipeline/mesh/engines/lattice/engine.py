@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from pipeline.progress import Progress
 
 
-_LONGER = "raise tetmesh.lattice.time_limit, or make the mesh coarser: raise tetmesh.edge"
+LONGER = "raise tetmesh.lattice.time_limit, or make the mesh coarser: raise tetmesh.edge"
+"""What to do when the time is over."""
 
 
 class LatticeSettings(EngineSettings):
@@ -38,7 +39,7 @@ def _mesh(
     from pipeline.mesh.engines.limits import within
     from pipeline.mesh.improve.finish import finished
 
-    progress = within(settings.own(LatticeSettings).time_limit, "the lattice", _LONGER, progress)
+    progress = within(settings.own(LatticeSettings).time_limit, "the lattice", LONGER, progress)
     return finished(*lattice_mesh(domain, settings, progress), domain, settings, progress)
 
 

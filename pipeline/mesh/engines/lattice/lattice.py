@@ -4,7 +4,8 @@
 
 import itertools
 import time
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,14 +18,16 @@ from pipeline.mesh.engines.limits import memory_allowed
 from pipeline.mesh.freedom import Freedom
 from pipeline.mesh.settings import TetmeshSettings
 from pipeline.mesh.working_mesh import WorkingMesh
-from pipeline.nouns.arrays import Floats, Ints
+from pipeline.nouns.arrays import Bools, Floats, Ints
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh_measures import MeshingCost
 from pipeline.progress import Progress
 
 if TYPE_CHECKING:
     from pipeline.geometry.fibers import FiberDistance
-    from pipeline.mesh.engines.lattice.octree import Octree
+    from pipeline.geometry.keys import KeyTable
+    from pipeline.mesh.engines.lattice.octree import Demand, Octree
+    from pipeline.mesh.engines.lattice.sizes import Grid
 
 _SNAP = 0.25  # cube edges between a vertex and the surface up to which the vertex moves onto it
 _OFF = 0.02  # of its diameter that improving may move a vertex off a fiber
@@ -68,32 +71,106 @@ def lattice_mesh(domain: FluidDomain, settings: TetmeshSettings, progress: Progr
     edge: no edge is then cut nearer to its end than a vertex may move.
     """
     began = time.monotonic()
-    lower, upper = np.array(domain.box.lower), np.array(domain.box.upper)
     progress("filling the duct with cubes", 0.1)
     tree, edge = _cubes(domain, settings)
+    distance = fiber_distance(domain, 2.0 * wanted_edges(domain, settings))
+    progress("measuring the distance to the fibers", 0.2)
+    lattice, value = _filled(domain, tree, edge, distance)
+    progress(f"cutting the fibers out of {len(lattice.tets)} tetrahedra", 0.4)
+    crossed = _crossed(lattice, value, distance)
+    cells = crossed.in_air(np.ones(len(crossed.tets), dtype=bool))
+    if lattice.cyclic:
+        cells = _matching_parts(cells, crossed.numbers(), crossed.plane)
+    mesh = WorkingMesh.of(crossed.points, cells, freedom_of(domain, settings))
+    return mesh, MeshingCost(time.monotonic() - began, peak_memory())
+
+
+def freedom_of(domain: FluidDomain, settings: TetmeshSettings) -> Freedom:
+    """Give how far the vertices of a lattice may move."""
+    return Freedom.of(domain, _OFF, settings.edge)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class LatticePart:
+    """Tetrahedra of a part of the duct, the same ones that the whole lattice has there.
+
+    Parameters
+    ----------
+    points : (n, 3) array [m]
+    names : (n, 2) int array
+        Of each vertex in the whole lattice: its number and -1, or those of the ends of the edge that it lies on.
+    tets : (m, 4) int32 array
+    group : (m,) int array
+        What each belongs to.
+    """
+
+    points: Floats
+    names: Ints
+    tets: "Cells"
+    group: Ints
+
+
+def lattice_part(
+    domain: FluidDomain, settings: TetmeshSettings, low: Floats, high: Floats, group_of: Callable[[Floats], Ints]
+) -> LatticePart:
+    """Give the lattice's tetrahedra in a part of the duct, before they are repaired.
+
+    Parameters
+    ----------
+    domain : FluidDomain
+        Whose sides are not cyclic.
+    settings : TetmeshSettings
+    low, high : (3,) arrays [m]
+        Corners of the part; around it twice the largest cube is looked at.
+    group_of : callable
+        Tells by the (k, 3) centers [m] of uncut tetrahedra what each belongs to; those below 0 are left out.
+
+    Returns
+    -------
+    LatticePart
+    """
+    lower = np.array(domain.box.lower)
+    counts, edge, largest = cubes_of(domain, settings)
+    around = 4 * largest
+    window = (
+        np.maximum(np.floor((low - lower) / edge).astype(np.int64) - around, 0),
+        np.minimum(np.ceil((high - lower) / edge).astype(np.int64) + around, counts),
+    )
+    tree, edge = _cubes(domain, settings, window)
+    size = np.int64(1) << tree.level
+    near = (tree.low < window[1] - around // 2) | (window[1] == counts)
+    near &= (tree.low + size[:, None] > window[0] + around // 2) | (window[0] == 0)
+    chosen = near.all(axis=1)
+    tree = replace(tree, low=tree.low[chosen], level=tree.level[chosen])
+    distance = fiber_distance(domain, 2.0 * wanted_edges(domain, settings))
+    lattice, value = _filled(domain, tree, edge, distance)
+    crossed = _crossed(lattice, value, distance)
+    # by where the vertices stood at first: one that moved onto a fiber says nothing of the lattice
+    group = group_of(lattice.points[crossed.tets].mean(axis=1))
+    chosen = [(each, crossed.in_air(group == each)) for each in np.unique(group[group >= 0]).tolist()]
+    cells = np.concatenate([cells for _, cells in chosen]) if chosen else np.empty((0, 4), np.int32)
+    groups = np.repeat([each for each, _ in chosen], [len(cells) for _, cells in chosen]).astype(np.int64)
+    return LatticePart(crossed.points, crossed.names(), cells, groups)
+
+
+def _filled(domain: FluidDomain, tree: "Octree", edge: Floats, distance: "FiberDistance") -> "tuple[Lattice, Floats]":
+    """Fill cubes with tetrahedra: the lattice, and the distance of each vertex from the fibers [m]."""
     # numba takes half a second to load, which no refused case file should cost
     from pipeline.mesh.engines.lattice.tetrahedra import lattice_tetrahedra, lattice_vertices
 
-    progress("measuring the distance to the fibers", 0.2)
+    lower, upper = np.array(domain.box.lower), np.array(domain.box.upper)
     vertices = lattice_vertices(tree)
-    distance = fiber_distance(domain, 2.0 * wanted_edges(domain, settings))
     ends = 2 * tree.counts
     plane = np.where(vertices.places == 0, -1, np.where(vertices.places == ends, 1, 0)).astype(np.int8)
     points: Floats = np.where(plane > 0, upper, lower + vertices.places * (0.5 * edge))
     value = distance.at(points)
     tets = lattice_tetrahedra(tree, vertices, value)
-
-    progress(f"cutting the fibers out of {len(tets)} tetrahedra", 0.4)
     # vertices opposite to each other on cyclic sides are one
     ends[2] += 1
     twins = vertices.places % ends if domain.cyclic else vertices.places
     number = np.ravel_multi_index(tuple(twins.T), tuple((ends + 1).tolist()))
-    lattice = Lattice(
-        points, plane, np.asarray(vertices.width * edge.max(), np.float64), tets, lower, upper, number, domain.cyclic
-    )
-    points, cells = _cut(lattice, value, distance)
-    mesh = WorkingMesh.of(points, cells, Freedom.of(domain, _OFF, settings.edge))
-    return mesh, MeshingCost(time.monotonic() - began, peak_memory())
+    width = np.asarray(vertices.width * edge.max(), np.float64)
+    return Lattice(points, plane, width, tets, lower, upper, number, domain.cyclic), value
 
 
 def wanted_edges(domain: FluidDomain, settings: TetmeshSettings) -> Floats:
@@ -106,10 +183,28 @@ def wanted_edges(domain: FluidDomain, settings: TetmeshSettings) -> Floats:
     return wanted
 
 
-def _cubes(domain: FluidDomain, settings: TetmeshSettings) -> tuple["Octree", Floats]:
-    """Cut the duct into cubes: the tree, and the extent of the smallest cube along each axis [m]."""
+def cubes_of(domain: FluidDomain, settings: TetmeshSettings) -> tuple[Ints, Floats, int]:
+    """Give the smallest cubes along each axis, their extents [m], and how many of them the largest cube spans."""
+    _, cubes, largest = _demand(domain, settings)
+    return cubes.counts, cubes.edge, 1 << max(0, int(np.floor(np.log2(1.001 * largest / cubes.edge.max()))))
+
+
+def _cubes(
+    domain: FluidDomain, settings: TetmeshSettings, window: tuple[Ints, Ints] | None = None
+) -> tuple["Octree", Floats]:
+    """Cut the duct, or a window of it, into cubes: the tree, and the smallest cube's extent along each axis [m]."""
+    from pipeline.mesh.engines.lattice.octree import octree
+
+    demand, cubes, _ = _demand(domain, settings)
+    wrapped = np.array([domain.cyclic, domain.cyclic, False])
+    limit = memory_allowed(settings.memory_limit)
+    return octree(demand, cubes.counts, cubes.edge, _NARROW, wrapped, limit / _BYTES, window), cubes.edge
+
+
+def _demand(domain: FluidDomain, settings: TetmeshSettings) -> "tuple[Demand, Grid, float]":
+    """Tell what the fibers ask for, the smallest cubes that suit it, and the largest edge of any cube [m]."""
     from pipeline.geometry.cylinders import table
-    from pipeline.mesh.engines.lattice.octree import Demand, octree
+    from pipeline.mesh.engines.lattice.octree import Demand
     from pipeline.mesh.engines.lattice.sizes import allowed, grid
 
     lower, upper = np.array(domain.box.lower), np.array(domain.box.upper)
@@ -131,8 +226,7 @@ def _cubes(domain: FluidDomain, settings: TetmeshSettings) -> tuple["Octree", Fl
         largest,
         0.5**_FINER,
     )
-    limit = memory_allowed(settings.memory_limit)
-    return octree(demand, cubes.counts, cubes.edge, _NARROW, wrapped, limit / _BYTES), cubes.edge
+    return demand, cubes, largest
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -164,10 +258,64 @@ class Lattice:
     cyclic: bool
 
 
-def _cut(lattice: Lattice, value: Floats, distance: "FiberDistance") -> "tuple[Floats, Cells]":
-    """Move vertices near the surface onto it, cut what still crosses it, and keep what lies in the air."""
+@dataclass(frozen=True, eq=False, slots=True)
+class Crossed:
+    """A lattice whose vertices near the fibers lie on them, and where its edges still cross them.
+
+    Parameters
+    ----------
+    points : (n + k, 3) array [m]
+        The lattice's vertices, then the crossing on each edge.
+    plane : (n + k, 3) int8 array
+        As in `Lattice`.
+    tets : (m, 4) int32 array
+    side : (n,) int8 array
+        1 for vertices in the air, 0 on a fiber, -1 in one.
+    rank : (n,) int array
+        As `cut.in_air` takes it.
+    edges : (k, 2) int array
+        Outer and inner end of the edges that cross a fiber.
+    table : KeyTable
+        Row of each.
+    kept : (m,) bool array
+        Tetrahedra to keep though every vertex lies on a fiber.
+    number : (n,) int array
+        As in `Lattice`.
+    """
+
+    points: Floats
+    plane: npt.NDArray[np.int8]
+    tets: "Cells"
+    side: npt.NDArray[np.int8]
+    rank: Ints
+    edges: Ints
+    table: "KeyTable"
+    kept: Bools
+    number: Ints
+
+    def in_air(self, chosen: Bools) -> "Cells":
+        """Give what the fibers leave of some tetrahedra."""
+        from pipeline.mesh.engines.lattice.cut import in_air
+
+        if chosen.all():
+            return in_air(self.points, self.tets, self.side, self.rank, self.table, self.kept)
+        return in_air(self.points, self.tets[chosen], self.side, self.rank, self.table, self.kept[chosen])
+
+    def names(self) -> Ints:
+        """Name each vertex by its number and -1, or by those of the ends of its edge: (n + k, 2) int array."""
+        of_lattice = np.column_stack([self.number, np.full(len(self.number), -1)])
+        return np.concatenate([of_lattice, self.number[self.edges]])
+
+    def numbers(self) -> Ints:
+        """Give the same number to vertices opposite to each other, (n + k,) int array."""
+        pairs = np.unique(self.number[self.edges], axis=0, return_inverse=True)[1].ravel()
+        return np.concatenate([self.number, self.number.max() + 1 + pairs])
+
+
+def _crossed(lattice: Lattice, value: Floats, distance: "FiberDistance") -> Crossed:
+    """Move vertices near the surface onto it, and find where edges still cross it."""
     from pipeline.geometry.adjacency import cell_volumes
-    from pipeline.mesh.engines.lattice.cut import crossed_edges, in_air
+    from pipeline.mesh.engines.lattice.cut import crossed_edges
 
     points, plane, tets = lattice.points.copy(), lattice.plane, lattice.tets
     near = np.flatnonzero(np.abs(value) < _SNAP * lattice.width)
@@ -196,7 +344,8 @@ def _cut(lattice: Lattice, value: Floats, distance: "FiberDistance") -> "tuple[F
     rank = lattice.number
     if not lattice.cyclic:
         rank = np.empty(len(points), np.int64)
-        rank[np.argsort(value, kind="stable")] = np.arange(len(points))
+        # by their numbers where two are as far: a part of the lattice is cut as the whole is
+        rank[np.lexsort((lattice.number, value))] = np.arange(len(points))
     points = np.concatenate([points, crossings])
     ends = plane[edges[:, 0]], plane[edges[:, 1]]
     plane = np.concatenate([plane, np.where(ends[0] == ends[1], ends[0], np.int8(0))])
@@ -217,12 +366,7 @@ def _cut(lattice: Lattice, value: Floats, distance: "FiberDistance") -> "tuple[F
         for axis, end in itertools.product((0, 1), (-1, 1)):
             doubtful |= ((lattice.plane[tets, axis] == end) & (side[tets] == 0)).sum(axis=1) == 3
         tets, kept = tets[~doubtful], kept[~doubtful]
-    cells = in_air(points, tets, side, rank, table, kept)
-    if lattice.cyclic:
-        pairs = np.unique(lattice.number[edges], axis=0, return_inverse=True)[1].ravel()
-        number = np.concatenate([lattice.number, lattice.number.max() + 1 + pairs])
-        cells = _matching_parts(cells, number, plane)
-    return points, cells
+    return Crossed(points, plane, tets, side, rank, edges, table, kept, lattice.number)
 
 
 def _matching_parts(cells: Cells, number: Ints, plane: npt.NDArray[np.int8]) -> Cells:

@@ -199,7 +199,15 @@ def _split(
     return split, kept_first, kept[:count].copy()
 
 
-def octree(demand: Demand, counts: Ints, edge_of_cube: Floats, share: float, wrapped: Bools, most: float) -> Octree:
+def octree(
+    demand: Demand,
+    counts: Ints,
+    edge_of_cube: Floats,
+    share: float,
+    wrapped: Bools,
+    most: float,
+    window: tuple[Ints, Ints] | None = None,
+) -> Octree:
     """Split a box into cubes until each is as small as the fibers near it ask for.
 
     Parameters
@@ -215,6 +223,9 @@ def octree(demand: Demand, counts: Ints, edge_of_cube: Floats, share: float, wra
         Axes along which the box repeats itself; its count is a multiple of the largest cube.
     most : float
         Number of cubes beyond which the work is given up.
+    window : two (3,) int arrays, optional
+        Lowest and highest corner, in smallest cubes, of the part of the box that is wanted: far outside of it the cubes
+        are too large or missing, and twice the largest cube inside of it they are those of the whole box.
 
     Returns
     -------
@@ -244,6 +255,9 @@ def octree(demand: Demand, counts: Ints, edge_of_cube: Floats, share: float, wra
             )
         level -= 1
         places, parent = _children(split[level + 1], counts, level)
+        if window is not None:
+            meets = ((places << level < window[1]) & ((places + 1) << level > window[0])).all(axis=1)
+            places, parent = places[meets], parent[meets]
         rows = np.flatnonzero(chosen)[parent]
         first, near = _gathered(first, near, rows)
     return Octree(counts, *_leaves(_balanced(split, counts, wrapped), counts))
