@@ -138,10 +138,13 @@ def _axis_in_air(points: Floats, walls: Ints, domain: FluidDomain) -> Floats:
     share = (number + 0.5) / parts[piece]
     places = pieces.start[piece] + share[:, None] * (pieces.end - pieces.start)[piece]
     fiber = pieces.fiber[piece]
-    # a fiber whose axis runs along a side is cut in half there: what lies less than half a radius inside does not count
-    margin = 0.5 * domain.radius[fiber][:, None]
+    # a fiber whose axis runs along a side is cut in half there, and the rim of a flat end is rounded by cells as large
+    # as the fiber: what lies less than half a radius inside either does not count
+    margin = 0.5 * domain.radius[fiber]
     lower, upper = np.array(domain.box.lower), np.array(domain.box.upper)
-    inside = ((places > lower + margin) & (places < upper - margin)).all(axis=1)
+    inside = ((places > lower + margin[:, None]) & (places < upper - margin[:, None])).all(axis=1)
+    along, beyond = share * lengths[piece], (1.0 - share) * lengths[piece]
+    inside &= ~(pieces.flat[piece, 0] & (along < margin)) & ~(pieces.flat[piece, 1] & (beyond < margin))
     places, fiber = places[inside], fiber[inside]
     # beside the axis by a hair, since in a regular array a ray would meet edges and vertices
     places = places + 1e-3 * domain.radius[fiber][:, None] * np.array([0.618, 0.377, 0.0])

@@ -79,6 +79,14 @@ def test_the_lattice_meshes_an_odd_place_or_says_what_to_do(kind: str) -> None:
     assert verdict == "pass" or "lower tetmesh.edge" in refusal
 
 
+def test_a_fiber_along_the_flow_keeps_its_axis_though_the_lattice_rounds_its_rims() -> None:
+    # a twelfth of the axis at each end lies less than half a radius within the flat ends
+    verdict, measures = meshed(ODD["runs along the flow"], "lattice")
+    assert verdict == "pass"
+    assert measures.fidelity is not None
+    assert measures.fidelity.fibers[0].in_air == 0.0
+
+
 def test_a_fiber_thicker_than_the_duct_is_one_clear_error() -> None:
     with pytest.raises(StageError, match=r"(close|no air).*(side|solidity|coverage)"):
         meshed((((0.0, 2.5, 2.5), (SIDE, 2.5, 2.5), 5.2),), "tetwild")
