@@ -19,7 +19,7 @@ from pipeline.enclosure.settings import EnclosureSettings
 from pipeline.geometry.tets import volumes
 from pipeline.mat.generate import generate
 from pipeline.mat.settings import Constant, LayeredSettings, Stop
-from pipeline.mesh.engines.ftetwild.child import run_child
+from pipeline.mesh.engines.ftetwild.running import run_mesher
 from pipeline.surface.measures import measure_surface
 from pipeline.surface.settings import SurfaceSettings
 from pipeline.surface.union import unite
@@ -82,7 +82,7 @@ def mesh(domain, passes: int) -> str:
     options = {"edge_length_abs": EDGE, "epsilon": ENVELOPE / diagonal, "stop_energy": 10.0, "num_opt_iter": passes}
     options |= {"num_threads": 1, "vtk_ordering": True, "quiet": False, "loglevel": 3}
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    raw = run_child(points, domain.triangles, options, {}, Limits(3600.0, 16e9), lambda what, done=None: None)
+    raw = run_mesher(points, domain.triangles, options, {}, Limits(3600.0, 16e9), lambda what, done=None: None)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     air = float(volumes(raw.points * DIAMETER, raw.tets).sum())
     error = (domain.volume - air) / (domain.box.volume - domain.volume)

@@ -13,9 +13,9 @@ from pipeline.case import Case, read_case
 from pipeline.errors import StageError
 from pipeline.line.run import Run, run
 from pipeline.mesh.engines.snappy.case import write_case
+from pipeline.mesh.engines.snappy.joining import joined, without
 from pipeline.mesh.engines.snappy.layout import layout
 from pipeline.mesh.engines.snappy.mesh import snapped
-from pipeline.mesh.engines.snappy.rebuild import joined, without
 from pipeline.mesh.settings import TetmeshSettings
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import FaceMesh

@@ -12,8 +12,8 @@ from pipeline.geometry.tets import boundary
 from pipeline.geometry.triangles import area_vectors
 from pipeline.mesh.boundary import assign, flattened, planes
 from pipeline.mesh.engines.flawed import FlawedMeshError
-from pipeline.mesh.engines.ftetwild.child import Meshed, run_child
 from pipeline.mesh.engines.ftetwild.engine import TetwildSettings
+from pipeline.mesh.engines.ftetwild.running import Meshed, run_mesher
 from pipeline.mesh.engines.ftetwild.size_field import size_field
 from pipeline.mesh.engines.limits import memory_allowed
 from pipeline.mesh.freedom import Freedom
@@ -145,7 +145,7 @@ def _run(points: Floats, domain: FluidDomain, settings: TetmeshSettings, progres
         "loglevel": 3,
     }
     limits = Limits(own.time_limit, memory_allowed(settings.memory_limit))
-    return run_child(points, domain.triangles, options, sizes, limits, progress)
+    return run_mesher(points, domain.triangles, options, sizes, limits, progress)
 
 
 def sizes_wanted(points: Floats, domain: FluidDomain, settings: TetmeshSettings) -> dict[str, np.ndarray]:

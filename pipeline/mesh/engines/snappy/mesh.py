@@ -16,11 +16,11 @@ from pipeline.geometry.polyhedra import polygons
 from pipeline.geometry.triangles import area_vectors
 from pipeline.mesh.boundary import free_axes, planes
 from pipeline.mesh.engines.limits import memory_allowed
-from pipeline.mesh.engines.snappy.blind import without_blind_cells
 from pipeline.mesh.engines.snappy.case import write_case
 from pipeline.mesh.engines.snappy.engine import SnappySettings
 from pipeline.mesh.engines.snappy.fit import fitted
 from pipeline.mesh.engines.snappy.running import run_case
+from pipeline.mesh.engines.snappy.undetermined import without_undetermined_cells
 from pipeline.mesh.settings import TetmeshSettings
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh import FaceMesh
@@ -68,7 +68,7 @@ def snapped(
     _check_planes(mesh, domain)
     raw = mesh
     progress("joining cells in which no gradient is known")
-    mesh, faulty = without_blind_cells(mesh, FIBERS)
+    mesh, faulty = without_undetermined_cells(mesh, FIBERS)
     filled = 1.0 - mesh.volume / raw.volume
     progress("restoring the fibers' volume")
     mesh = fitted(mesh, FIBERS, free_axes(mesh.points, domain.box), domain.volume)

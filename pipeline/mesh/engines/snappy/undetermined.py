@@ -11,7 +11,7 @@ to the fibers: the air in there stands still.
 import numpy as np
 
 from pipeline.geometry.polyhedra import Polyhedra
-from pipeline.mesh.engines.snappy.rebuild import Mask, joined, without
+from pipeline.mesh.engines.snappy.joining import Mask, joined, without
 from pipeline.nouns.arrays import Ints
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.openfoam.metrics import determinant, face_pyramid, face_weight, non_orthogonality, skewness, volume_ratio
@@ -27,7 +27,7 @@ _VOLUME_RATIO = 0.02
 _FACE_PYRAMID = 0.005
 
 
-def without_blind_cells(mesh: FaceMesh, patch: str) -> tuple[FaceMesh, int]:
+def without_undetermined_cells(mesh: FaceMesh, patch: str) -> tuple[FaceMesh, int]:
     """Join each cell in which no gradient is known with a neighbor, or give it to a patch.
 
     Parameters
@@ -45,30 +45,30 @@ def without_blind_cells(mesh: FaceMesh, patch: str) -> tuple[FaceMesh, int]:
     stuck = np.zeros(mesh.cells, dtype=bool)
     for _ in range(_ROUNDS):
         shape = mesh.polyhedra()
-        blind = _blind(mesh, shape)
-        into = _partners(mesh, shape, blind, stuck)
+        undetermined = _undetermined(mesh, shape)
+        into = _partners(mesh, shape, undetermined, stuck)
         if (into != np.arange(mesh.cells)).any():
             mesh, stuck = _soundly_joined(mesh, into, stuck)
             continue
-        dropped = blind & _at(mesh, patch)
+        dropped = undetermined & _at(mesh, patch)
         if not dropped.any():
             break
         mesh = without(mesh, dropped, patch)
         stuck = np.zeros(mesh.cells, dtype=bool)
-    return mesh, int(_blind(mesh, mesh.polyhedra()).sum())
+    return mesh, int(_undetermined(mesh, mesh.polyhedra()).sum())
 
 
-def _blind(mesh: FaceMesh, shape: Polyhedra) -> Mask:
+def _undetermined(mesh: FaceMesh, shape: Polyhedra) -> Mask:
     return np.asarray(determinant(mesh, shape) < _LEAST_DETERMINANT)
 
 
-def _partners(mesh: FaceMesh, shape: Polyhedra, blind: Mask, stuck: Mask) -> Ints:
-    """Find the neighbor that sees, across the largest face, of each blind cell; every other cell is its own."""
+def _partners(mesh: FaceMesh, shape: Polyhedra, undetermined: Mask, stuck: Mask) -> Ints:
+    """Find the neighbor that sees, across the largest face, of each undetermined cell; every other cell is its own."""
     n = mesh.internal
     cell = np.concatenate([mesh.owner[:n], mesh.neighbour])
     partner = np.concatenate([mesh.neighbour, mesh.owner[:n]])
     area = np.tile(np.linalg.norm(shape.areas[:n], axis=1), 2)
-    fit = np.flatnonzero(blind[cell] & ~stuck[cell] & ~blind[partner])
+    fit = np.flatnonzero(undetermined[cell] & ~stuck[cell] & ~undetermined[partner])
     order = fit[np.argsort(area[fit], kind="stable")]
     into = np.arange(mesh.cells)
     into[cell[order]] = partner[order]  # of several the last one stays

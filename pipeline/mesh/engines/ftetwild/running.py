@@ -41,7 +41,7 @@ class Meshed:
     peak_memory: int
 
 
-def run_child(
+def run_mesher(
     points: Floats,
     triangles: Ints,
     options: dict[str, Any],
