@@ -57,7 +57,7 @@ def test_a_sweep_over_one_share_is_gauss_and_seidels() -> None:
     right, x = rng.normal(size=(2, 6, 3))
     before, fixed = x.copy(), np.zeros((6, 3), np.uint8)
     fixed[2, 1] = 1
-    sweeps.sweep(0, 6, start, column, matrix.ravel(), 1.0 / np.diag(matrix), fixed, right, before, (0, 6), x, False)
+    sweeps.sweep(0, 6, start, column, matrix.ravel(), 1.0 / np.diag(matrix), fixed, right, before, x, False)
     by_hand = before.copy()
     for row in range(6):
         new = by_hand[row] + (right[row] - matrix[row] @ by_hand) / matrix[row, row]
@@ -76,11 +76,9 @@ def test_shares_read_what_the_others_were_and_not_what_they_become() -> None:
     for order in (range(sharing.SHARES), reversed(range(sharing.SHARES))):
         x = first.copy()
         for share in order:
-            sweeps.sweep(
-                2 * share, 2 * share + 2, start, column, matrix.ravel(), over, fixed, right, first, (0, 16), x, True
-            )
+            sweeps.sweep(2 * share, 2 * share + 2, start, column, matrix.ravel(), over, fixed, right, first, x, True)
         found.append(x)
     assert np.array_equal(*found)
     shared = first.copy()
-    Team().over(0, 16, sweeps.sweep, start, column, matrix.ravel(), over, fixed, right, first, (0, 16), shared, True)
+    Team().over(0, 16, sweeps.sweep, start, column, matrix.ravel(), over, fixed, right, first, shared, True)
     assert np.array_equal(shared, found[0])

@@ -119,7 +119,7 @@ class VelocityCycle:
         for kind in reversed(kinds) if backward else kinds:
             self.team.over(
                 *kind, sweeps.sweep, self.start, self.column, self.values, self.over, self.fixed, residual,
-                change.copy(), kind, change, backward,
+                change.copy(), change, backward,
             )  # fmt: skip
 
 

@@ -30,7 +30,7 @@ from pipeline.solve.stokes.system import DuctFlow, System, Tell
 
 CREEPING_REYNOLDS = 0.1
 """Fiber Reynolds number below which inertia is left out: it changes no drop that was measured by .5 % there."""
-_NODE_MEMORY = 2600  # bytes per node at the peak, by the sizes of its arrays at 38,000 to 150,000 cells
+_NODE_MEMORY = 3400  # bytes per node at the peak, measured at 210,000 cells beyond what the program itself takes
 _INERTIA_MEMORY = 1300  # bytes per node more, for what changes with the velocity
 _MEMORY_SHARE = 0.85
 _OTHER = {"slip": "no_slip", "no_slip": "slip"}

@@ -85,29 +85,27 @@ def sweep(
     fixed: Flags,
     right: Floats,
     before: Floats,
-    others: tuple[int, int],
     x: Floats,
     backward: bool,
 ) -> None:
     """One Gauss-Seidel sweep of each component of a share's rows in place.
 
-    `over` is one over the diagonal; what is fixed stays. Rows of the other shares, from ``others[0]`` to before
-    ``others[1]``, change at the same time: what they were is in `before`.
+    `over` is one over the diagonal; what is fixed stays. Rows of the other shares change at the same time: what they
+    were is in `before`.
     """
-    low, high = others
     for step in range(end - first):
         row = end - 1 - step if backward else first + step
         a, b, c = right[row, 0], right[row, 1], right[row, 2]
         for place in range(start[row], start[row + 1]):
             value, j = values[place], column[place]
-            if low <= j < high and not first <= j < end:
-                a -= value * before[j, 0]
-                b -= value * before[j, 1]
-                c -= value * before[j, 2]
-            else:
+            if first <= j < end:
                 a -= value * x[j, 0]
                 b -= value * x[j, 1]
                 c -= value * x[j, 2]
+            else:
+                a -= value * before[j, 0]
+                b -= value * before[j, 1]
+                c -= value * before[j, 2]
         if not fixed[row, 0]:
             x[row, 0] += over[row] * a
         if not fixed[row, 1]:
