@@ -63,6 +63,13 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     }
 
 
+def obstacle(results: "Results") -> str | None:
+    """Say why nothing is caught: a medium that is there as a surface has no fibers to stick to."""
+    if results.case.mat.generator == "surface":
+        return "captures need the fibers' axes, and a medium that is there as a surface has none"
+    return None
+
+
 def _flow(results: "Results", progress: Progress) -> tuple[Cells, str, str]:
     """Read the velocity, the digest of what it was read from, and the name of the solver."""
     progress("capture: reading the flow")

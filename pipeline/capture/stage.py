@@ -22,6 +22,7 @@ CAPTURE = Stage(
     settings=CaptureSettings,
     reads=("flow", "enclosure"),
     units={"most_penetrating": "nm", "least_efficiency": "%"},
+    obstacle=Entry("pipeline.capture.make:obstacle"),
     asked=True,
     tables=Entry("pipeline.capture.tables:tables"),
     section=Entry("pipeline.report.page.capture_section:capture"),

@@ -759,7 +759,7 @@ def init(
         The case file to write.
     generator
         Where the fibers come from: layered (dropped one after the other), box (straight, anywhere in a slab), array
-        (parallel) or file (your own, from CSV).
+        (parallel), file (your own, from CSV) or surface (a medium by its own surface).
     """
     from pipeline.cli.starting import write_first_case
 

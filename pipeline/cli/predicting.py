@@ -7,6 +7,7 @@ import json
 import sys
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 
@@ -17,6 +18,9 @@ from pipeline.analytics.tables.rows import prediction_tables, thick_tables
 from pipeline.cli.tables import plain_table
 from pipeline.errors import CaseError, StageError
 from pipeline.line.places import disk_trouble_explained
+
+if TYPE_CHECKING:
+    from pipeline.nouns.surface import Surface
 
 
 def predict_filter(source: Path | None, given: Mapping[str, str], as_json: bool, plot: Path | None) -> None:
@@ -99,14 +103,30 @@ def _known(source: Path) -> tuple[FilterSettings, FlowSettings]:
     from pipeline.case import read_case
     from pipeline.line.run import Run
     from pipeline.mat.generate import generate
-    from pipeline.mat.make import mat_predictor
+    from pipeline.mat.make import mat_predictor, named_surface
     from pipeline.nouns.comparison import Comparison
     from pipeline.nouns.fibers import Mat
+    from pipeline.nouns.surface import Surface
 
     if source.is_dir():
         run = Run.opened(source)
         if (source / "compare").is_dir():
             return filter_of_comparison(dataclasses.asdict(run.read(Comparison))), run.case.flow
+        if run.case.mat.generator == "surface":
+            return _filter_of_body(run.read(Surface)), run.case.flow
         return filter_of_mat(run.read(Mat), run.case.flow.flow()), run.case.flow
     case = read_case(source)
+    if case.mat.generator == "surface":
+        from pipeline.surface.own import read_body
+
+        return _filter_of_body(read_body(named_surface(case.mat))[0]), case.flow
     return filter_of_mat(generate(case.mat, mat_predictor(case)), case.flow.flow()), case.flow
+
+
+def _filter_of_body(surface: "Surface") -> FilterSettings:
+    """Describe a body as a filter: solidity, thickness, and the diameter of cylinders of its volume and area."""
+    return FilterSettings(
+        solidity=surface.solidity,
+        thickness=surface.slab.size[2],
+        fiber_diameter=2.0 * float(surface.radius[0]),
+    )

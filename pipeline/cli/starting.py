@@ -13,7 +13,14 @@ from pipeline.case import Case
 from pipeline.cli.describe import Key, keys, summary
 from pipeline.errors import CaseError, StageError
 from pipeline.line.places import disk_trouble_explained
-from pipeline.mat.settings import ArraySettings, BoxSettings, FileSettings, LayeredSettings, Stop
+from pipeline.mat.settings import (
+    ArraySettings,
+    BoxSettings,
+    FileSettings,
+    LayeredSettings,
+    Stop,
+    SurfaceFileSettings,
+)
 
 _WIDTH = 110
 GENERATORS: dict[str, type[BaseModel]] = {
@@ -21,6 +28,7 @@ GENERATORS: dict[str, type[BaseModel]] = {
     "box": BoxSettings,
     "array": ArraySettings,
     "file": FileSettings,
+    "surface": SurfaceFileSettings,
 }
 # What a first case has where there is no default: the paper's fibers in a corner small enough to mesh in a minute.
 _FIRST_CASE: Mapping[str, str] = {
@@ -30,13 +38,14 @@ _FIRST_CASE: Mapping[str, str] = {
     "relaxation_slope": "0.15",
     "arrangement": '"square"',
     "solidity": '"10 %"',
-    "file": '"fibers.csv"',
+    "unit": '"um"',
     "pressure_drop": '"320 Pa"',
     "efficiency": '"99.97 %"',
     "count": "100",
     "particle_diameter": '"300 nm"',
     "mean_free_path": '"65.3 nm"',
 }
+_FIRST_FILE = {"file": '"fibers.csv"', "surface": '"medium.stl"'}
 _FIRST_STOP = {"layered": ("coverage", "1"), "box": ("solidity", '"10 %"')}
 
 
@@ -111,7 +120,7 @@ def _table(settings: type[BaseModel], generator: str) -> Iterator[str]:
         if key.name == stop and settings is Stop:
             yield f"{key.name} = {target}"
         elif key.required:
-            yield f"{key.name} = {_FIRST_CASE[key.name]}"
+            yield f"{key.name} = {_FIRST_FILE[generator] if key.name == 'file' else _FIRST_CASE[key.name]}"
         elif key.default is not None:
             yield f"#{key.name} = {key.default}"
         else:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from pipeline.analytics.models.growth import Predictor, predictor
 from pipeline.cad.fibers import write_fibers
+from pipeline.errors import CaseError
 from pipeline.line import store
 from pipeline.mat.generate import generate
 from pipeline.mat.measures import measure
@@ -25,10 +26,7 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     """Draw the fibers."""
     settings, predict = results.case.mat, mat_predictor(results.case)
     if isinstance(settings, SurfaceFileSettings):
-        named = SurfaceFile(
-            str(settings.file), store.file_digest(settings.file), parse(f"1 {settings.unit}", "m"), settings.side
-        )
-        store.write_json(into / "surface_file.json", named)
+        store.write_json(into / "surface_file.json", named_surface(settings))
         return {"file": settings.file.name}
     mat = generate(settings, predict, progress)
     measures = measure(mat)
@@ -41,6 +39,21 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
         store.write_json(into / "stop.json", stop)
         counts[stop.quantity] = stop.reached
     return counts
+
+
+def named_surface(settings: SurfaceFileSettings) -> SurfaceFile:
+    """Say where a medium's surface is read from, and how.
+
+    Raises
+    ------
+    CaseError
+        If there is no such file.
+    """
+    if not settings.file.is_file():
+        raise CaseError(f"cannot read the surface {settings.file}: there is no such file")
+    return SurfaceFile(
+        str(settings.file), store.file_digest(settings.file), parse(f"1 {settings.unit}", "m"), settings.side
+    )
 
 
 def mat_predictor(case: Any) -> Predictor | None:

@@ -17,7 +17,7 @@ from pipeline.cli.starting import first_case
 from pipeline.mesh.engines.registry import ENGINES
 from tests.cli.conftest import Fibertwin
 
-GENERATORS = ("layered", "box", "array", "file")
+GENERATORS = ("layered", "box", "array", "file", "surface")
 
 
 @pytest.mark.parametrize("generator", GENERATORS)

@@ -2,6 +2,7 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import json
 import math
 from pathlib import Path
 
@@ -139,3 +140,62 @@ def test_the_line_takes_a_surface_from_the_duct_on(tmp_path: Path) -> None:
     case.write_text(case.read_text(encoding="utf-8").replace('unit = "um"\n', ""), encoding="utf-8")
     with pytest.raises(CaseError, match="unit"):
         read_case(case)
+
+
+@pytest.mark.parametrize("program", ["trimesh", "meshio"])
+@pytest.mark.parametrize("suffix", [".stl", ".ply", ".obj"])
+def test_files_of_other_programs_are_read_as_they_write_them(program: str, suffix: str, tmp_path: Path) -> None:
+    path = tmp_path / f"body{suffix}"
+    if program == "trimesh":
+        import trimesh
+
+        # .stl in binary, .ply in binary, .obj in text
+        trimesh.Trimesh(POINTS, TRIANGLES, process=False).export(path)
+    else:
+        import meshio
+
+        # .stl and .obj in text, .ply in binary of 64 bits
+        meshio.Mesh(POINTS, [("triangle", TRIANGLES)]).write(path)
+    found = read_body(SurfaceFile(str(path), "", UM))[1]
+    assert found.mended == "nothing"
+    assert found.volume == pytest.approx(VOLUME * UM**3, rel=5e-4)
+
+
+def test_the_models_take_a_body_as_a_filter(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from pipeline.cli.predicting import predict_filter
+
+    case = tmp_path / "own.toml"
+    pv.PolyData.from_regular_faces(POINTS, TRIANGLES).save(tmp_path / "body.stl")
+    case.write_text(
+        '[mat]\ngenerator = "surface"\nfile = "body.stl"\nunit = "um"\n'
+        '[flow]\nface_velocity = "2.5 cm/s"\ntemperature = "293 K"\n',
+        encoding="utf-8",
+    )
+    found = read_body(SurfaceFile(str(tmp_path / "body.stl"), "", UM))[1]
+    predict_filter(case, {}, True, None)
+    said = json.loads(capsys.readouterr().out)
+    assert said["solidity"] == pytest.approx(found.solidity)
+    assert said["thickness"] == pytest.approx(found.thickness)
+    assert said["fiber_diameter"] == pytest.approx(found.mean_diameter)
+    # after a run as before it
+    run(read_case(case), tmp_path / "run", until="surface")
+    predict_filter(tmp_path / "run", {}, True, None)
+    assert json.loads(capsys.readouterr().out) == said
+    (tmp_path / "body.stl").unlink()
+    with pytest.raises(CaseError, match=r"body\.stl: there is no such file"):
+        predict_filter(case, {}, True, None)
+
+
+def test_a_body_catches_nothing_and_says_why(tmp_path: Path) -> None:
+    from pipeline.capture.make import obstacle
+    from pipeline.line.run import Run
+
+    (tmp_path / "body.stl").write_bytes(b"")
+    case = tmp_path / "own.toml"
+    case.write_text(
+        '[mat]\ngenerator = "surface"\nfile = "body.stl"\nunit = "um"\n'
+        '[flow]\nface_velocity = "2.5 cm/s"\ntemperature = "293 K"\n',
+        encoding="utf-8",
+    )
+    assert "need the fibers' axes" in str(obstacle(Run(read_case(case), tmp_path / "run")))
+    assert obstacle(Run(read_case(Path("cases/smoke.toml")), tmp_path / "run")) is None

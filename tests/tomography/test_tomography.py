@@ -4,6 +4,7 @@
 
 import contextlib
 import json
+import tracemalloc
 from pathlib import Path
 from typing import Any
 
@@ -109,6 +110,44 @@ def test_bad_tomograms_are_told_in_one_sentence(tmp_path: Path) -> None:
         segment(gray, threshold=1)
     with pytest.raises(CaseError, match="voxels thick"):
         surface_of(crossed(2), UM)
+
+
+def test_of_ten_gigabytes_only_the_window_is_read(tmp_path: Path) -> None:
+    # sparse: the disk holds what was written alone
+    path, shape = tmp_path / "large.raw", (2500, 2000, 1000)
+    part = gray_of(crossed(4))
+    with path.open("wb") as file:
+        file.truncate(2 * shape[0] * shape[1] * shape[2])
+        for z in range(part.shape[2]):
+            for y in range(part.shape[1]):
+                file.seek(2 * (((900 + z) * shape[1] + 1500 + y) * shape[0] + 2000))
+                file.write(part[:, y, z].astype("<u2").tobytes())
+    window = (2000, 1500, 900, *(low + size for low, size in zip((2000, 1500, 900), part.shape, strict=True)))
+    tracemalloc.start()
+    try:
+        found = read_voxels(path, (*window[:3], *window[3:]), shape, "<u2")
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    np.testing.assert_array_equal(found, part)
+    assert peak < 20 * found.nbytes
+    # the whole is refused before it is read, with what it would take
+    with pytest.raises(CaseError, match=r"5000 million voxels would take \d+ GiB; .*--window"):
+        read_voxels(path, None, shape, "<u2")
+
+
+@pytest.mark.parametrize("mode", ["L", "I;16", "I;16B", "F"])
+def test_pages_that_pillow_writes_are_read(mode: str, tmp_path: Path) -> None:
+    from PIL import Image
+
+    kind = {"L": "u1", "I;16": "<u2", "I;16B": ">u2", "F": "<f4"}[mode]
+    gray = gray_of(crossed(4)).astype(kind)
+    pages = [
+        Image.frombytes(mode, (gray.shape[0], gray.shape[1]), np.ascontiguousarray(gray[:, :, z].T).tobytes())
+        for z in range(gray.shape[2])
+    ]
+    pages[0].save(tmp_path / "a.tif", save_all=True, append_images=pages[1:])
+    np.testing.assert_array_equal(read_voxels(tmp_path / "a.tif"), gray)
 
 
 def test_a_stack_becomes_a_case(
