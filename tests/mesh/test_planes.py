@@ -8,11 +8,15 @@ import pytest
 from pipeline.geometry.box import Box
 from pipeline.geometry.tets import boundary
 from pipeline.mesh.boundary import assign
+from pipeline.mesh.engines.flawed import FlawedMeshError
 from pipeline.mesh.engines.ftetwild.ftetwild import _plane_errors, lost_part
+from pipeline.mesh.improve.finish import _check_patches
+from pipeline.mesh.settings import TetmeshSettings
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.patches import FIBERS, PATCHES
 from tests.mesh.boxes import kuhn_box
+from tests.mesh.meshes import working
 from tests.sample_meshes import NO_PIECES, TetMesh
 
 UNIT = Box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
@@ -70,3 +74,13 @@ def test_sharp_air_that_is_filled_beside_a_fiber_is_no_dent() -> None:
     filled = reaching[np.arange(len(reaching)) != np.flatnonzero(beside)[0]]
     assert _plane_errors(points, filled, whole)["inlet"] == pytest.approx(-1 / 48)
     assert lost_part(points, filled, whole) is None
+
+
+def test_a_way_that_the_mesh_closes_says_what_keeps_it_open() -> None:
+    # square arrays of solidity 0.75 and more: gaps between fibers narrower than fTetWild's envelope
+    points, tets = hollow_box()
+    whole = domain_of(mesh_of(points, tets))
+    closed = tets[(points[tets][:, :, 2] > 0.0).all(axis=1)]
+    said = r"reaches inlet, though .* lower tetmesh\.tetwild\.envelope .* raise surface\.sides"
+    with pytest.raises(FlawedMeshError, match=said):
+        _check_patches(working(points, closed), whole, TetmeshSettings())

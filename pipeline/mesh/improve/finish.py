@@ -93,7 +93,8 @@ def _check_patches(mesh: WorkingMesh, domain: FluidDomain, settings: TetmeshSett
         )
     if empty:
         raise FlawedMeshError(
-            f"no air reaches {', '.join(empty)}: the fibers close the duct there; use a larger mat.side"
+            f"no air of the mesh reaches {', '.join(empty)}, though the fibers' surface leaves a way there: it is "
+            f"narrower than the mesh keeps; {settings.mesher.truer}, raise surface.sides, or take a mat of less solidity"
         )
 
 
