@@ -94,7 +94,7 @@ def _check_patches(mesh: WorkingMesh, domain: FluidDomain, settings: TetmeshSett
     if empty:
         raise FlawedMeshError(
             f"no air of the mesh reaches {', '.join(empty)}, though the fibers' surface leaves a way there: it is "
-            f"narrower than the mesh keeps; {settings.mesher.truer}, raise surface.sides, or take a mat of less solidity"
+            f"narrower than the mesh keeps; {settings.mesher.truer}, raise surface.sides, or take less solidity"
         )
 
 
