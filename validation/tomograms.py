@@ -1,6 +1,6 @@
 """Our own mats as tomograms, and back: what is lost of their solidity and of their pressure drop.
 
-``python -m validation.tomograms FOLDER`` prints the table of docs/structure.md. A mat is solved as it is; then it is
+``python -m validation.tomograms FOLDER`` prints the table of docs/measuring.md. A mat is solved as it is; then it is
 laid on voxels, told again from gray values, meshed from the surface of its voxels alone, and solved.
 """
 
@@ -120,5 +120,5 @@ def lines(rows: list[Row]) -> list[str]:
 
 
 if __name__ == "__main__":
-    chosen = read_case(Path("cases/default.toml"), ("mat.side=12 um",))
+    chosen = read_case(Path("cases/default.toml"), ("mat.stop.coverage=1",))
     print("\n".join(lines(table(chosen, Path(sys.argv[1])))))  # noqa: T201
