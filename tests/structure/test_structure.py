@@ -10,7 +10,9 @@ import pytest
 
 from pipeline.case import read_case, validate
 from pipeline.geometry.box import Box
+from pipeline.line.results import Results
 from pipeline.line.run import Run, run
+from pipeline.line.store import write_json
 from pipeline.mat.generate import generate
 from pipeline.mat.settings import ArraySettings
 from pipeline.nouns.fibers import Mat
@@ -214,3 +216,24 @@ def test_too_few_voxels_to_a_fiber_are_refused() -> None:
 
     with pytest.raises(CaseError, match=r"structure\.voxels_per_diameter"):
         validate({"structure": {"voxels_per_diameter": 0.5}}, "a case")
+
+
+def test_the_page_shows_pores_and_permeability_where_they_are(tmp_path: Path) -> None:
+    from pipeline.line.stages import LINE
+    from pipeline.nouns.permeability import RESULT, AlongAxis, Permeability
+    from pipeline.report.page.structure_section import structure
+
+    case = read_case(Path("cases/smoke.toml"))
+    assert structure(Results(case, tmp_path, LINE)) is None
+    found = structure_of(tubes(5.3, 12.4), periodic=False)
+    section = structure(Results(case, tmp_path, LINE, loaded={Structure: found}))
+    assert section is not None
+    assert len(section.parts) == 1
+    # both sizes that let air through are drawn and told in micrometers: the wide tube's
+    assert repr(section.parts[0]).count("24.8") >= 2
+    along = AlongAxis(3e-12, 5.0, 2e-5, 4e-10, "run")
+    tensor = ((3e-12, 0.0, 0.0), (0.0, 3e-12, 0.0), (0.0, 0.0, 3e-12))
+    write_json(tmp_path / RESULT, Permeability("a", "slip", 0.1, along, along, along, tensor, 1.0))
+    section = structure(Results(case, tmp_path, LINE))
+    assert section is not None
+    assert "('z, through the mat', '3', '5', '20')" in repr(section.parts[0])
