@@ -14,12 +14,14 @@ from pipeline.micrograph.profile import Floats, Optics, fitted, middle_line, opt
 from pipeline.micrograph.ribbons import Image, slopes
 from pipeline.micrograph.trace import Trace, traces
 
-_EXPLAINED = 0.97
+_EXPLAINED = 0.985
 """Share of a profile's variance below which it is no cylinder's: two fibers side by side, or a bead's foot."""
 _EVEN = 0.3
 """How far a fiber stands out of one side over how far out of the other, at least; rims stand out of one alone."""
 _NARROWEST = 4.0
 """Diameter in pixels below which the beam's width is all that is seen, and bright rims look like fibers."""
+_LONG = 4.0
+"""A fiber is seen over this many of its diameters, or what runs beside it may be its edge."""
 _SLENDER = 10.0
 """One fiber at least is seen over this many of its diameters: no blob or wrinkle is."""
 _FOR_OPTICS = 10
@@ -87,9 +89,11 @@ def fibers_of(brightness: Image) -> Sight | None:
     widths: list[float] = []
     for trace, profile in zip(found, taken, strict=True):
         fit = fitted(profile, optics)
-        if fit.explained >= _EXPLAINED and fit.evenness >= _EVEN and 2.0 * fit.half_width >= _NARROWEST:
+        width = 2.0 * fit.half_width
+        shaped = fit.explained >= _EXPLAINED and fit.evenness >= _EVEN
+        if shaped and width >= _NARROWEST and trace.seen >= _LONG * width:
             kept.append(trace)
-            widths.append(2.0 * fit.half_width)
+            widths.append(width)
     slenderness = np.array([trace.seen for trace in kept]) / np.array(widths)
     if not kept or slenderness.max() < _SLENDER:
         return None

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import gaussian_filter1d, map_coordinates, spline_filter
+from scipy.ndimage import gaussian_filter, gaussian_filter1d, map_coordinates, spline_filter
 from scipy.optimize import minimize, minimize_scalar, nnls
 
 from pipeline.micrograph.ribbons import Image, noise_of
@@ -25,6 +25,10 @@ _SPACING = 0.25
 """Distance between the samples of a profile, in pixels."""
 _FINE = 0.2
 """Distance between the samples that the blur is computed on, in pixels."""
+_CALM, _DARKEST = 3.0, 0.005
+"""Standard deviation of the average [pixel] and share of the picture by which the darkest places are found."""
+_UNLIKE = 3.5
+"""How far a row across a fiber is off the median one over what half of them are, at most."""
 _BLURS = (0.5, 0.9, 1.5, 2.3)
 _RIMS = (0.0, 1.0, 3.0)
 _DARKS = (0.0, 0.6)
@@ -36,7 +40,7 @@ _STEEPEST = 4.0
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Profile:
-    """Brightness across a fiber, the median along it.
+    """Brightness across a fiber, the mean along it where it is undisturbed.
 
     Parameters
     ----------
@@ -46,7 +50,7 @@ class Profile:
     half_width : float [pixel]
         As traced.
     grain : float [-]
-        Variance that noise leaves in the median.
+        Variance that noise leaves in the mean.
     """
 
     place: Floats
@@ -56,7 +60,9 @@ class Profile:
 
 
 def profiles(brightness: Image, traced: Sequence[Trace]) -> list[Profile]:
-    """Take the brightness across fibers.
+    """Take the brightness across fibers, above that of the darkest places.
+
+    What a detector gives where nothing is seen is no part of a fiber's light, whose rims are a share of it.
 
     Parameters
     ----------
@@ -68,7 +74,8 @@ def profiles(brightness: Image, traced: Sequence[Trace]) -> list[Profile]:
     list of Profile
         One per trace.
     """
-    smooth = spline_filter(brightness.astype(np.float64), order=3)
+    nothing = float(np.quantile(gaussian_filter(brightness, _CALM), _DARKEST))
+    smooth = spline_filter(brightness.astype(np.float64) - nothing, order=3)
     noise = noise_of(brightness)
     return [_profile(smooth, trace, noise) for trace in traced]
 
@@ -87,7 +94,20 @@ def _profile(spline: Floats, trace: Trace, noise: float) -> Profile:
     values = map_coordinates(spline, [at[..., 1], at[..., 0]], order=3, prefilter=False, mode="nearest")
     values[(at[..., 0] < 0) | (at[..., 0] > columns - 1) | (at[..., 1] < 0) | (at[..., 1] > rows - 1)] = np.nan
     known = np.isfinite(values).sum(axis=0) > 0.5 * len(values)
-    return Profile(place[known], np.nanmedian(values[:, known], axis=0), half, 0.5 * math.pi * noise**2 / len(values))
+    place, values = place[known], values[:, known]
+    kept = values[_alike(values, np.abs(place) <= half + 2.0)]
+    return Profile(place, np.nanmean(kept, axis=0), half, noise**2 / len(kept))
+
+
+def _alike(values: Floats, inner: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """Tell which rows across a fiber look like most of them; on others something lies, or leans against the fiber.
+
+    Of these the mean is taken: a median place by place would be pulled off the bright and narrow rims.
+    """
+    apart = values[:, inner] - np.nanmedian(values[:, inner], axis=0)
+    off = np.sqrt(np.nanmean(apart**2, axis=1))
+    alike: npt.NDArray[np.bool_] = off <= _UNLIKE * np.median(off)
+    return alike
 
 
 def middle_line(trace: Trace, window: int = 15) -> Floats:
@@ -219,11 +239,26 @@ def _misfit(profile: Profile, half: float, optics: Optics) -> float:
 def _shapes(half: float, optics: Optics, place: Floats) -> Floats:
     """Give the blurred shapes that brightness is made of: left, right, and the fiber."""
     reach = max(float(-place[0]), float(place[-1])) + 4.0 * optics.blur
-    fine = np.arange(-int(reach / _FINE), int(reach / _FINE) + 1) * _FINE
-    inside = np.clip((half - np.abs(fine)) / _FINE + 0.5, 0.0, 1.0)
-    level = np.sqrt(np.maximum(1.0 - (fine / half) ** 2, 0.0))
-    steep = (np.minimum(1.0 / np.maximum(level, 1e-6), _STEEPEST) - 1.0) / (_STEEPEST - 1.0)
-    fiber = 1.0 + optics.rim * steep - optics.dark * (1.0 - level)
-    raw = np.stack([(1 - inside) * (fine < 0), (1 - inside) * (fine >= 0), inside * fiber])
+    count = int(reach / _FINE)
+    fine = np.arange(-count, count + 1) * _FINE
+    # each sample is the mean over its cell: a thin fiber's rim is narrower than a cell
+    borders = np.clip((np.arange(-count, count + 2) - 0.5) * _FINE / half, -1.0, 1.0)
+    share, plain, steep = (np.diff(each) * half / _FINE for each in _sums_across(borders))
+    outside = 1.0 - share
+    fiber = share + optics.rim * steep - optics.dark * (share - plain)
+    raw = np.stack([outside * (fine < 0), outside * (fine >= 0), fiber])
     smooth = gaussian_filter1d(raw, optics.blur / _FINE, axis=1, mode="nearest", truncate=3.0)
     return np.stack([np.interp(place, fine, one) for one in smooth], axis=1)
+
+
+def _sums_across(place: Floats) -> tuple[Floats, Floats, Floats]:
+    """Give the sums from a fiber's middle line to places across it, from -1 to 1, of three shapes.
+
+    They are 1; the cosine of the tilt; and by how much its inverse, bounded, exceeds 1, over what it does at most.
+    """
+    angle = np.arcsin(place)
+    cosine = 0.5 * (place * np.sqrt(1.0 - place**2) + angle)
+    bound = math.sqrt(1.0 - _STEEPEST**-2)
+    beyond = np.maximum(np.abs(place) - bound, 0.0)
+    inverse = np.sign(place) * (np.minimum(np.abs(angle), math.asin(bound)) + _STEEPEST * beyond)
+    return place, cosine, (inverse - place) / (_STEEPEST - 1.0)

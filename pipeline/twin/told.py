@@ -2,12 +2,14 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import textwrap
 from typing import Any
 
 from pipeline.design.targets import readable
 from pipeline.nouns.section import Table
 from pipeline.twin.match import Twin
 
+_WIDTH = 110
 _ORDER = ("fiber_diameter", "basis_weight", "solidity", "thickness", "pressure_drop")
 
 
@@ -78,7 +80,8 @@ def head_of(twin: Twin) -> str:
         f"{words(name, twin)} {readable(name, twin.values[name])} (measured {readable(name, each.value)})"
         for name, each in twin.measured.items()
     ]
-    return f"The twin of a filter with {twin.fibers.origin}: {', '.join(has)}.\nWhich flow goes with what was measured?"
+    opening = f"The twin of a filter with {twin.fibers.origin}: {', '.join(has)}."
+    return "\n".join([*textwrap.wrap(opening, _WIDTH), "Which flow goes with what was measured?"])
 
 
 def numbers(twin: Twin) -> dict[str, Any]:

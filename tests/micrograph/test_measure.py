@@ -57,6 +57,15 @@ def test_noise_alone_is_no_fiber() -> None:
         measure(taken(noise))
 
 
+def test_fibers_of_too_few_pixels_are_told_with_what_would_do() -> None:
+    with pytest.raises(
+        CaseError, match=r"too few pixels per fiber: half of the \d+ .* 6 are needed; take it at a larger"
+    ):
+        measure(taken(bands(np.full(5, 4.1), (150, 160), seed=3, blur=0.8, noise=0.02)))
+    with pytest.raises(CaseError, match=r"no fiber was found .* at least 4 pixels wide"):
+        measure(taken(bands(np.full(4, 2.0), (120, 130), seed=1)))
+
+
 def test_directions_are_from_the_right_upward() -> None:
     # all bands rise to the right by 30 degrees, which is down the rows of an array
     measured = measure(taken(bands(np.full(5, 10.0), (240, 260), seed=2, angles=np.full(5, np.radians(30)))))
