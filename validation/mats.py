@@ -27,19 +27,21 @@ SEEDS = range(1, 11)
 """Seeds that are solved on the usual mesh of both meshers."""
 USUAL = 0.6
 MESHES = (
-    ("tetwild", 1.0, False),
-    ("tetwild", 0.8, False),
-    ("tetwild", 0.6, True),
-    ("tetwild", 0.4, True),
-    ("tetwild", 0.3, True),
-    ("lattice", 0.8, False),
-    ("lattice", 0.6, True),
-    ("lattice", 0.4, True),
-    ("snappy", 0.6, True),
-    ("snappy", 0.4, True),
+    ("tetwild", 1.0, 1.0, False),
+    ("tetwild", 0.8, 1.0, False),
+    ("tetwild", 0.6, 1.0, True),
+    ("tetwild", 0.4, 1.0, True),
+    ("tetwild", 0.3, 1.0, True),
+    ("tetwild", 0.4, 0.67, True),
+    ("tetwild", 0.3, 0.5, True),
+    ("lattice", 0.8, 1.0, False),
+    ("lattice", 0.6, 1.0, True),
+    ("lattice", 0.4, 1.0, True),
+    ("snappy", 0.6, 1.0, True),
+    ("snappy", 0.4, 1.0, True),
 )
-"""Mesher, edge in fiber diameters, and whether finite volumes are solved on it too."""
-FINEST = "tetwild", 0.3
+"""Mesher, edge in fiber diameters, growth, and whether finite volumes are solved on it too."""
+FINEST = "tetwild", 0.3, 1.0
 """Mesh whose elements stand for the limit."""
 
 
@@ -53,6 +55,8 @@ class MatRun:
     mesher : str
     edge : float [-]
         Edge length at the fibers in fiber diameters, as asked for.
+    growth : float [-]
+        How much longer edges become per distance from the fibers.
     cells : int
     length : float [-]
         Of all fibers, in fiber diameters.
@@ -67,6 +71,7 @@ class MatRun:
     seed: int
     mesher: str
     edge: float
+    growth: float
     cells: int
     length: float
     solidity: float
@@ -77,9 +82,9 @@ class MatRun:
     volumes_seconds: float
 
 
-def mat_case(case: Case, seed: int, mesher: str, edge: float) -> Case:
+def mat_case(case: Case, seed: int, mesher: str, edge: float, growth: float = 1.0) -> Case:
     """Give a case of a random mat another seed, and another mesh."""
-    mesh = {"engine": mesher, "edge": edge}
+    mesh = {"engine": mesher, "edge": edge, "growth": growth}
     return case.model_copy(
         update={
             "mat": case.mat.model_copy(update={"seed": seed}),
@@ -110,6 +115,7 @@ def solved(case: Case, folder: Path, volumes: bool, progress: Progress = silent)
         seed=int(getattr(case.mat, "seed")),  # noqa: B009 - not every generator draws
         mesher=case.tetmesh.engine,
         edge=case.tetmesh.edge,
+        growth=case.tetmesh.growth,
         cells=results.read(TetmeshMeasures).cells,
         length=results.read(MatMeasures).total_length / results.read(Comparison).fiber_diameter,
         solidity=results.read(Comparison).solidity["mesh"],
@@ -130,29 +136,30 @@ def _seconds(case: Case, folder: Path, until: str, without: frozenset[str], prog
 def mat_runs(case: Case, folder: Path, progress: Progress = silent) -> Iterator[Callable[[], MatRun]]:
     """Give every run of the study."""
     for seed in SEEDS:
-        for mesher, edge, volumes in MESHES:
+        for mesher, edge, growth, volumes in MESHES:
             if seed in REFINED or (edge == USUAL and mesher != "snappy"):
-                place = folder / f"{mesher}_{edge:g}_{seed}"
-                yield partial(solved, mat_case(case, seed, mesher, edge), place, volumes, progress)
+                place = folder / f"{mesher}_{edge:g}_{growth:g}_{seed}"
+                yield partial(solved, mat_case(case, seed, mesher, edge, growth), place, volumes, progress)
 
 
 def edge_errors(runs: Sequence[MatRun]) -> list[EdgeError]:
     """Tell, for every mesher, solver and edge, the errors against each mat's finest mesh."""
-    limit = {each.seed: each.elements for each in runs if (each.mesher, each.edge) == FINEST}
+    limit = {each.seed: each.elements for each in runs if (each.mesher, each.edge, each.growth) == FINEST}
     found = []
-    for mesher, edge, _ in MESHES:
-        group = [each for each in runs if (each.mesher, each.edge) == (mesher, edge) and each.seed in limit]
+    for mesher, edge, growth, _ in MESHES:
+        mesh = mesher, edge, growth
+        group = [each for each in runs if (each.mesher, each.edge, each.growth) == mesh and each.seed in limit]
         for solver, drop, spent in (
             ("stokes", "elements", "elements_seconds"),
             ("openfoam", "volumes", "volumes_seconds"),
         ):
             solved_runs = [each for each in group if math.isfinite(getattr(each, drop))]
-            if not solved_runs or (solver, mesher, edge) == ("stokes", *FINEST):
+            if not solved_runs or (solver, mesh) == ("stokes", FINEST):
                 continue
             errors = [getattr(each, drop) / limit[each.seed] - 1.0 for each in solved_runs]
             found.append(
                 EdgeError(
-                    mesher, solver, edge, len(errors), statistics.fmean(errors), min(errors), max(errors),
+                    mesher, solver, edge, growth, len(errors), statistics.fmean(errors), min(errors), max(errors),
                     statistics.fmean(each.cells / each.length for each in solved_runs),
                     statistics.fmean((each.mesh_seconds + getattr(each, spent)) / each.length for each in solved_runs),
                 )

@@ -51,15 +51,16 @@ def cost_figure(found: Sequence[EdgeError]) -> "Figure":
 
     figure = Figure(figsize=(7.0, 4.6), layout="constrained")
     axes = figure.subplots()
-    pairs = dict.fromkeys((each.mesher, each.solver) for each in found)
-    for (mesher, solver), color in zip(pairs, _COLORS, strict=False):
-        rows = sorted((e for e in found if (e.mesher, e.solver) == (mesher, solver)), key=lambda each: each.edge)
+    lines = dict.fromkeys((each.mesher, each.solver, each.growth < 1.0) for each in found)
+    for (mesher, solver, graded), color in zip(lines, _COLORS, strict=False):
+        rows = [e for e in found if (e.mesher, e.solver, e.growth < 1.0) == (mesher, solver, graded)]
+        rows.sort(key=lambda each: each.edge)
         axes.loglog(
             [each.seconds for each in rows],
             [100.0 * abs(each.mean) for each in rows],
             "o-" if solver == "stokes" else "s--",
             color=color,
-            label=f"{mesher}, {'elements' if solver == 'stokes' else 'simpleFoam'}",
+            label=f"{mesher}{', graded' if graded else ''}, {'elements' if solver == 'stokes' else 'simpleFoam'}",
         )
         for each in rows:
             axes.annotate(f"{each.edge:g}", (each.seconds, 100.0 * abs(each.mean)), fontsize=7)

@@ -102,6 +102,7 @@ def edges_table(found: Sequence[EdgeError]) -> str:
             each.mesher,
             SOLVERS[each.solver],
             f"{each.edge:g}",
+            f"{each.growth:g}",
             f"{100.0 * each.mean:+.1f} % ({100.0 * each.low:+.1f} to {100.0 * each.high:+.1f} %)",
             str(each.mats),
             f"{each.cells:.0f}",
@@ -132,7 +133,7 @@ def time_table(found: Sequence[EdgeError]) -> str:
 
 def _need(need: Need) -> str:
     trend = "" if need.measured else " (trend)"
-    return f"edge {need.edge:.2f}: {need.cells:,.0f} cells, {need.seconds:.2g} s{trend}"
+    return f"edge {need.edge:.2f}, growth {need.growth:.2f}: {need.cells:,.0f} cells, {need.seconds:.2g} s{trend}"
 
 
 def agreement_table(runs: Sequence[MatRun], found: Sequence[EdgeError]) -> str:

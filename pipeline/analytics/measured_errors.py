@@ -15,7 +15,8 @@ from itertools import pairwise
 from pathlib import Path
 
 FILE = Path(__file__).with_suffix(".json")
-_SOLVERS = {"stokes": "second-order elements", "openfoam": "finite volumes"}
+_USUAL = 0.6  # default edge, whose growth is 1
+_SAME = 0.02
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +29,8 @@ class EdgeError:
         As ``tetmesh.engine`` and ``solve.engine`` name them.
     edge : float [-]
         At the fibers, in fiber diameters.
+    growth : float [-]
+        How much longer edges become per distance from the fibers.
     mats : int
         How many were measured.
     mean, low, high : float [-]
@@ -41,6 +44,7 @@ class EdgeError:
     mesher: str
     solver: str
     edge: float
+    growth: float
     mats: int
     mean: float
     low: float
@@ -98,8 +102,10 @@ def write_measured(found: Measured) -> None:
     FILE.write_text(json.dumps(rounded, indent=1) + "\n", encoding="utf-8")
 
 
-def mesh_error(mesher: str, solver: str, edge: float, known: Sequence[EdgeError] | None = None) -> EdgeError | None:
-    """Interpolate what a mesh leaves; None outside the edges that were measured.
+def mesh_error(
+    mesher: str, solver: str, edge: float, growth: float = 1.0, known: Sequence[EdgeError] | None = None
+) -> EdgeError | None:
+    """Interpolate what a mesh leaves; None outside the edges that were measured, or for another growth.
 
     Parameters
     ----------
@@ -107,6 +113,8 @@ def mesh_error(mesher: str, solver: str, edge: float, known: Sequence[EdgeError]
         As ``tetmesh.engine`` and ``solve.engine`` name them.
     edge : float [-]
         At the fibers, in fiber diameters.
+    growth : float [-]
+        How much longer edges become per distance from the fibers.
     known : sequence of EdgeError
         Measured; those of the file unless given.
 
@@ -117,13 +125,14 @@ def mesh_error(mesher: str, solver: str, edge: float, known: Sequence[EdgeError]
 
     Examples
     --------
-    >>> coarse = EdgeError("tetwild", "stokes", 1.0, 5, 0.03, 0.02, 0.04, 100.0, 0.2)
-    >>> fine = EdgeError("tetwild", "stokes", 0.5, 5, 0.006, 0.004, 0.01, 300.0, 0.5)
-    >>> round(mesh_error("tetwild", "stokes", 0.75, [coarse, fine]).mean, 3)
+    >>> coarse = EdgeError("tetwild", "stokes", 1.0, 1.0, 5, 0.03, 0.02, 0.04, 100.0, 0.2)
+    >>> fine = EdgeError("tetwild", "stokes", 0.5, 1.0, 5, 0.006, 0.004, 0.01, 300.0, 0.5)
+    >>> round(mesh_error("tetwild", "stokes", 0.75, known=[coarse, fine]).mean, 3)
     0.016
     """
+    key = mesher, solver, growth
     rows = sorted(
-        (each for each in known or measured().edges if (each.mesher, each.solver) == (mesher, solver)),
+        (each for each in known or measured().edges if (each.mesher, each.solver, each.growth) == key),
         key=lambda each: each.edge,
     )
     for low, high in pairwise(rows):
@@ -133,7 +142,7 @@ def mesh_error(mesher: str, solver: str, edge: float, known: Sequence[EdgeError]
                 name: (1.0 - share) * getattr(low, name) + share * getattr(high, name)
                 for name in ("mean", "low", "high", "cells", "seconds")
             }
-            return EdgeError(mesher, solver, edge, min(low.mats, high.mats), **between)
+            return EdgeError(mesher, solver, edge, growth, min(low.mats, high.mats), **between)
     return None
 
 
@@ -169,6 +178,8 @@ class Need:
         At the fibers, in fiber diameters.
     cells, seconds : float [-], [s]
         Per fiber diameter of fiber length, as in `EdgeError`.
+    growth : float [-]
+        That goes with it: in proportion to the edge where such meshes were measured.
     measured : bool
         Whether the edge lies within those measured; if not, it follows their trend.
     """
@@ -177,11 +188,14 @@ class Need:
     edge: float
     cells: float
     seconds: float
+    growth: float
     measured: bool
 
 
 def needed_edge(mesher: str, solver: str, error: float, known: Sequence[EdgeError] | None = None) -> Need | None:
     """Estimate the edge that gives an error, by powers of the edge fitted to what was measured.
+
+    Where meshes were measured whose growth falls with their edge, those are followed: finite volumes see all cells.
 
     Parameters
     ----------
@@ -199,12 +213,14 @@ def needed_edge(mesher: str, solver: str, error: float, known: Sequence[EdgeErro
 
     Examples
     --------
-    >>> rows = [EdgeError("m", "s", h, 5, -0.1 * h**2, 0.0, 0.0, h**-3, h**-3) for h in (1.0, 0.5)]
+    >>> rows = [EdgeError("m", "s", h, 1.0, 5, -0.1 * h**2, 0.0, 0.0, h**-3, h**-3) for h in (1.0, 0.5)]
     >>> need = needed_edge("m", "s", 0.001, rows)
     >>> round(need.edge, 3), round(need.cells), need.measured
     (0.1, 1000, False)
     """
     rows = [each for each in known or measured().edges if (each.mesher, each.solver) == (mesher, solver)]
+    graded = [each for each in rows if abs(each.growth / each.edge - 1.0 / _USUAL) < _SAME * each.growth]
+    rows = graded if len(graded) > 1 else [each for each in rows if each.growth == 1.0]
     if len(rows) < 2:
         return None
     edges = [each.edge for each in rows]
@@ -214,7 +230,8 @@ def needed_edge(mesher: str, solver: str, error: float, known: Sequence[EdgeErro
     )
     edge = (error / scale) ** (1.0 / power)
     at = [each[0] * edge ** each[1] for each in (cells, seconds)]
-    return Need(error, edge, at[0], at[1], min(edges) <= edge <= max(edges))
+    growth = edge / _USUAL if rows == graded else 1.0
+    return Need(error, edge, at[0], at[1], growth, min(edges) <= edge <= max(edges))
 
 
 def _power(edges: Sequence[float], values: Sequence[float]) -> tuple[float, float]:

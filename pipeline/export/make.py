@@ -48,4 +48,4 @@ def order_of(results: "Results", formats: Iterable[str], progress: Progress) -> 
         slip = FiberSlip(SLIP_COEFFICIENT * flow.mean_free_path, radius)
     fields = shown.by_name() if shown is not None else {}
     mesh = case.tetmesh
-    return Order(case.export, flow, case.enclosure.sides, fields, slip, progress, mesh.engine, mesh.edge)
+    return Order(case.export, flow, case.enclosure.sides, fields, slip, progress, mesh.engine, mesh.edge, mesh.growth)

@@ -63,7 +63,7 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
 def with_known_errors(solution: Solution, results: "Results") -> Solution:
     """Add what is known of the error without solving other meshes and other mats."""
     case, diameter = results.case, results.read(Comparison).fiber_diameter
-    mesh = mesh_error(case.tetmesh.engine, solution.engine, case.tetmesh.edge)
+    mesh = mesh_error(case.tetmesh.engine, solution.engine, case.tetmesh.edge, case.tetmesh.growth)
     slab = results.read(Surface).slab
     drawn = case.mat.generator in ("layered", "box")
     return replace(

@@ -16,22 +16,37 @@ SOLVED = Solution(7.5, 1e-8, 1e-9, 1e-12, 0.0, 0.0, 30, True)
 def rows(mesher: str = "lattice", solver: str = "openfoam", order: float = 2.0) -> list[EdgeError]:
     # the error falls with a power of the edge, cells and time rise with the third and fourth
     return [
-        EdgeError(mesher, solver, h, 5, -0.1 * h**order, -0.12 * h**order, -0.08 * h**order, 50 * h**-3, 0.01 * h**-4)
+        EdgeError(
+            mesher, solver, h, 1.0, 5, -0.1 * h**order, -0.12 * h**order, -0.08 * h**order, 50 * h**-3, 0.01 * h**-4
+        )
         for h in (0.4, 0.6, 1.0)
     ]
 
 
 @pytest.mark.parametrize("edge", [0.4, 0.5, 0.6, 0.83, 1.0])
 def test_between_measured_edges_an_error_of_second_order_is_met_exactly(edge: float) -> None:
-    found = mesh_error("lattice", "openfoam", edge, rows())
+    found = mesh_error("lattice", "openfoam", edge, known=rows())
     assert found is not None
     assert found.mean == pytest.approx(-0.1 * edge**2, rel=1e-12)
     assert found.low <= found.mean <= found.high
 
 
+def test_another_growth_is_another_mesh() -> None:
+    assert mesh_error("lattice", "openfoam", 0.5, 0.4, rows()) is None
+
+
+def test_meshes_that_are_graded_with_their_edge_are_followed_where_they_were_measured() -> None:
+    # with a growth in the edge's proportion the error falls four times as quickly
+    graded = [replace(each, growth=each.edge / 0.6, mean=each.mean * each.edge**2) for each in rows()]
+    need = needed_edge("lattice", "openfoam", 0.001, [*(each for each in rows() if each.edge != 0.6), *graded])
+    assert need is not None
+    assert 0.1 * need.edge**4 == pytest.approx(0.001, rel=1e-6)
+    assert need.growth == pytest.approx(need.edge / 0.6)
+
+
 @pytest.mark.parametrize(("mesher", "edge"), [("lattice", 0.39), ("lattice", 1.01), ("tetwild", 0.6)])
 def test_outside_what_was_measured_nothing_is_said(mesher: str, edge: float) -> None:
-    assert mesh_error(mesher, "openfoam", edge, rows()) is None
+    assert mesh_error(mesher, "openfoam", edge, known=rows()) is None
     if mesher == "tetwild":
         assert needed_edge(mesher, "openfoam", 0.01, rows()) is None
 

@@ -24,7 +24,7 @@ RUNG = Rung(
     "square", 0.1, 0.0, "tetwild", "stokes", 0.24, 9000, 0.2, 24.9, 25.2, 25.3, 24.8317, 0.0028, 1e-5, 1e-7, 30, True,
     9.0,
 )  # fmt: skip
-MAT_RUN = MatRun(1, "tetwild", 0.6, 7000, 40.0, 0.16, 3.1, 2.9, 7.0, 4.0, 3.0)
+MAT_RUN = MatRun(1, "tetwild", 0.6, 1.0, 7000, 40.0, 0.16, 3.1, 2.9, 7.0, 4.0, 3.0)
 
 
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
@@ -124,13 +124,13 @@ def all_runs() -> list[MatRun]:
     """Runs whose drop is 3 (1 + error of the edge squared), finite volumes 5 % of it and elements 1 %."""
     runs = []
     for seed in SEEDS:
-        for mesher, edge, volumes in MESHES:
+        for mesher, edge, growth, volumes in MESHES:
             limit = 3.0 + 0.1 * seed
-            of_elements = limit * (1.0 + (0.0 if (mesher, edge) == FINEST else 0.01 * edge**2))
+            of_elements = limit * (1.0 + (0.0 if (mesher, edge, growth) == FINEST else 0.01 * edge**2))
             of_volumes = limit * (1.0 - 0.05 * edge**2)
             runs.append(
                 replace(
-                    MAT_RUN, seed=seed, mesher=mesher, edge=edge, cells=round(7000 / edge**3),
+                    MAT_RUN, seed=seed, mesher=mesher, edge=edge, growth=growth, cells=round(7000 / edge**3),
                     elements=of_elements if mesher != "snappy" else math.nan,
                     volumes=of_volumes if volumes else math.nan,
                 )
@@ -139,20 +139,20 @@ def all_runs() -> list[MatRun]:
 
 
 def test_errors_are_those_against_each_mats_own_finest_mesh() -> None:
-    found = {(each.mesher, each.solver, each.edge): each for each in edge_errors(all_runs())}
-    assert ("tetwild", "stokes", FINEST[1]) not in found
-    assert ("snappy", "stokes", 0.6) not in found
-    usual = found["tetwild", "stokes", 0.6]
+    found = {(each.mesher, each.solver, each.edge, each.growth): each for each in edge_errors(all_runs())}
+    assert ("tetwild", "stokes", *FINEST[1:]) not in found
+    assert ("snappy", "stokes", 0.6, 1.0) not in found
+    usual = found["tetwild", "stokes", 0.6, 1.0]
     assert usual.low <= usual.mean <= usual.high
     assert usual.mean == pytest.approx(0.0036, rel=0.02)
-    assert found["lattice", "openfoam", 0.4].mean == pytest.approx(-0.008, rel=0.02)
+    assert found["lattice", "openfoam", 0.4, 1.0].mean == pytest.approx(-0.008, rel=0.02)
     assert usual.cells == pytest.approx(7000 / 0.6**3 / 40.0, rel=1e-3)
 
 
 def test_tables_of_mats_show_error_cost_and_agreement() -> None:
     runs = all_runs()
     found = edge_errors(runs)
-    assert "| lattice | simpleFoam | 0.4 | -0.8 % (-0.8 to -0.8 %) |" in edges_table(found)
+    assert "| lattice | simpleFoam | 0.4 | 1 | -0.8 % (-0.8 to -0.8 %) |" in edges_table(found)
     # 5 % edge^2 is 2 % at an edge of .63, and 1 % at .45
     assert "edge 0.63" in time_table(found)
     assert "edge 0.45" in time_table(found)

@@ -38,7 +38,9 @@ class Order:
     mesher : str, optional
         As ``tetmesh.engine`` names it, and
     edge : float [-], optional
-        its edge at the fibers in fiber diameters, for what is known of the mesh's error.
+        its edge at the fibers in fiber diameters, and
+    growth : float [-]
+        how much longer edges become per distance from them, for what is known of the mesh's error.
     """
 
     settings: "ExportSettings"
@@ -49,6 +51,7 @@ class Order:
     progress: Progress = silent
     mesher: str | None = None
     edge: float | None = None
+    growth: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ def _write(mesh: FaceMesh, folder: Path, order: Order) -> None:
     from pipeline.export.formats.openfoam.readme import format_readme
 
     write_openfoam(mesh, folder, order.flow, order.sides, order.settings, order.progress, order.slip)
-    text = format_readme(order.flow.density, order.slip is not None, order.mesher, order.edge)
+    text = format_readme(order.flow.density, order.slip is not None, order.mesher, order.edge, order.growth)
     (folder / "README.md").write_text(text, encoding="ascii")
 
 

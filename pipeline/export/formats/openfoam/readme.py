@@ -7,7 +7,7 @@ from pipeline.analytics.measured_errors import EdgeError, measured, mesh_error, 
 _ASKED = (0.05, 0.02, 0.01)
 
 
-def format_readme(density: float, slip: bool, mesher: str | None, edge: float | None) -> str:
+def format_readme(density: float, slip: bool, mesher: str | None, edge: float | None, growth: float = 1.0) -> str:
     """Write the text.
 
     Parameters
@@ -20,6 +20,8 @@ def format_readme(density: float, slip: bool, mesher: str | None, edge: float | 
         As ``tetmesh.engine`` names it; None for a mesh of unknown making.
     edge : float [-] or None
         At the fibers, in fiber diameters.
+    growth : float [-]
+        How much longer edges become per distance from the fibers.
     """
     wall = "The air slips along the fibers." if slip else "The air stands still on the fibers."
     lines = [
@@ -31,31 +33,32 @@ def format_readme(density: float, slip: bool, mesher: str | None, edge: float | 
         "",
         "## How far to trust finite volumes here",
         "",
-        *_trust(mesher, edge),
+        *_trust(mesher, edge, growth),
     ]
     return "\n".join(lines) + "\n"
 
 
-def _trust(mesher: str | None, edge: float | None) -> list[str]:
+def _trust(mesher: str | None, edge: float | None, growth: float) -> list[str]:
     if mesher is None or edge is None:
         return ["What the mesh leaves is not known: solve on a finer one, and compare."]
-    mesh = f"`tetmesh.engine = {mesher}`, `tetmesh.edge = {edge:g}`"
+    mesh = f"`tetmesh.engine = {mesher}`, `edge = {edge:g}`, `growth = {growth:g}`"
     lines = []
-    here = mesh_error(mesher, "openfoam", edge)
+    here = mesh_error(mesher, "openfoam", edge, growth)
     if here is None:
         lines.append(f"What simpleFoam leaves on such a mesh ({mesh}) was not measured.")
     else:
         lines.append(f"On such a mesh ({mesh}) simpleFoam's pressure drop was {_told(here)}.")
-    elements = mesh_error(mesher, "stokes", edge)
+    elements = mesh_error(mesher, "stokes", edge, growth)
     if elements is not None:
         lines.append(f"Second-order elements (`solve.engine = stokes`) were {_told(elements)}.")
     for error in _ASKED:
         need = needed_edge(mesher, "openfoam", error)
         if need is not None:
+            mesh = f"`tetmesh.edge = {need.edge:.2g}` with `tetmesh.growth = {need.growth:.2g}`"
+            trend = "." if need.measured else ", by the trend: no such mesh was measured."
             lines.append(
-                f"- {100 * error:.0f} % need `tetmesh.edge = {need.edge:.2g}`: {_rounded(need.cells)} cells and "
-                f"{need.seconds:.2g} s of processor time per fiber diameter of fiber length"
-                + ("." if need.measured else ", by the trend: no such mesh was measured.")
+                f"- {100 * error:.0f} % need {mesh}: {_rounded(need.cells)} cells and {need.seconds:.2g} s of "
+                f"processor time per fiber diameter of fiber length{trend}"
             )
     return [*lines, "", f"Measured: {measured().source}."]
 
