@@ -49,11 +49,9 @@ check: setup  ## Style, types, imports, and the examples in the documentation
 	$(BIN)/deptry pipeline
 	$(BIN)/pytest --doctest-modules pipeline docs README.md
 
-bench: setup  ## Measure what the documentation quotes: writing, engines side by side, time to a drag (half an hour)
+bench: setup  ## Measure what the documentation quotes: writing, engines side by side; make verify has the time to a percent
 	$(BIN)/pytest benchmarks --benchmark-only --benchmark-group-by=func
 	$(BIN)/python -m benchmarks.meshers runs/bench/meshers
-	$(BIN)/python -m benchmarks.drag runs/bench/array array
-	$(BIN)/python -m benchmarks.drag runs/bench/default default
 
 verify: setup  ## Solve arrays, lattices and mats, and write what docs/verification.md shows (half an hour of processor time; needs OpenFOAM)
 	$(BIN)/python docs/verify.py runs/verification

@@ -161,7 +161,7 @@ def edge_errors(runs: Sequence[MatRun]) -> list[EdgeError]:
                 EdgeError(
                     mesher, solver, edge, growth, len(errors), statistics.fmean(errors), min(errors), max(errors),
                     statistics.fmean(each.cells / each.length for each in solved_runs),
-                    statistics.fmean((each.mesh_seconds + getattr(each, spent)) / each.length for each in solved_runs),
+                    statistics.median((each.mesh_seconds + getattr(each, spent)) / each.length for each in solved_runs),
                 )
             )  # fmt: skip
     return found

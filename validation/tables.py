@@ -114,6 +114,7 @@ def edges_table(found: Sequence[EdgeError]) -> str:
         "mesher",
         "solver",
         "edge [d]",
+        "growth",
         "error, mean (range)",
         "mats",
         "cells per d of fiber",

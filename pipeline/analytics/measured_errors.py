@@ -38,7 +38,7 @@ class EdgeError:
     cells : float
         Per fiber diameter of fiber length, on average.
     seconds : float [s]
-        Of processor time for mesh and flow per fiber diameter of fiber length, on average.
+        Of processor time for mesh and flow per fiber diameter of fiber length, the median.
     """
 
     mesher: str
@@ -209,7 +209,7 @@ def needed_edge(mesher: str, solver: str, error: float, known: Sequence[EdgeErro
     Returns
     -------
     Need or None
-        None where fewer than two edges were measured.
+        None where fewer than two edges were measured, or the error does not fall with them.
 
     Examples
     --------
@@ -228,6 +228,8 @@ def needed_edge(mesher: str, solver: str, error: float, known: Sequence[EdgeErro
         _power(edges, values)
         for values in ([abs(r.mean) for r in rows], [r.cells for r in rows], [r.seconds for r in rows])
     )
+    if power <= 0.0:
+        return None
     edge = (error / scale) ** (1.0 / power)
     at = [each[0] * edge ** each[1] for each in (cells, seconds)]
     growth = edge / _USUAL if rows == graded else 1.0

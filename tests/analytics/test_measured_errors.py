@@ -44,6 +44,10 @@ def test_meshes_that_are_graded_with_their_edge_are_followed_where_they_were_mea
     assert need.growth == pytest.approx(need.edge / 0.6)
 
 
+def test_an_error_that_does_not_fall_with_the_edge_needs_no_edge() -> None:
+    assert needed_edge("lattice", "openfoam", 0.01, rows(order=-0.5)) is None
+
+
 @pytest.mark.parametrize(("mesher", "edge"), [("lattice", 0.39), ("lattice", 1.01), ("tetwild", 0.6)])
 def test_outside_what_was_measured_nothing_is_said(mesher: str, edge: float) -> None:
     assert mesh_error(mesher, "openfoam", edge, known=rows()) is None
