@@ -11,6 +11,7 @@ import math
 import statistics
 import subprocess
 import sys
+import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -84,17 +85,18 @@ class Measured:
 def measured(folder: Path) -> Iterator[Measured]:
     """Read the finished runs of a study."""
     for path in sorted(folder.glob("results/*/result.json")):
-        found, swept = read_json(path), read_json(path.parent / MANIFEST)["set"]
+        found = read_json(path)
+        swept = tomllib.loads("\n".join(read_json(path.parent / MANIFEST)["set"]))["mat"]
         solve, compare, mat = found["solve"], found["compare"], found["mat"]
         diameter = compare["fiber_diameter"]
         slip = solve["permeability"] / (0.5 * diameter) ** 2
         yield Measured(
             study=folder.name,
-            side=parse(swept["mat.side"], "m") / diameter,
-            slope=swept.get("mat.relaxation_slope", _SLOPE),
-            contact=swept["mat.contact"],
-            spacing=parse(swept["mat.spacing"], "m") / diameter,
-            seed=swept["mat.seed"],
+            side=parse(swept["side"], "m") / diameter,
+            slope=swept.get("relaxation_slope", _SLOPE),
+            contact=swept["contact"],
+            spacing=parse(swept["spacing"], "m") / diameter,
+            seed=swept["seed"],
             solidity=compare["solidity"]["mesh"],
             thickness=mat["thickness"] / diameter,
             permeability=slip * solve["pressure_drop_slip"] / solve["pressure_drop_no_slip"],

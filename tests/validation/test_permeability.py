@@ -2,8 +2,10 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import json
 import math
 import random
+from pathlib import Path
 
 import pytest
 
@@ -70,3 +72,24 @@ def test_a_model_is_held_against_the_fit_and_against_the_mats() -> None:
 ])  # fmt: skip
 def test_published_fits_are_those_of_their_papers(title: str, solidity: float, k: float) -> None:
     assert 4.0 / resistances()[title](solidity) == pytest.approx(k, rel=1e-9)
+
+
+def test_a_finished_run_of_a_study_is_read_in_diameters(tmp_path: Path) -> None:
+    place = tmp_path / "results" / "one"
+    place.mkdir(parents=True)
+    set_ = ['mat.side="14 um"', 'mat.contact="clear"', 'mat.spacing="0.7 um"', "mat.seed=3"]
+    (place / "manifest.json").write_text(json.dumps({"set": set_}))
+    found = {
+        "mat": {"thickness": 28e-6},
+        "compare": {"fiber_diameter": 1.4e-6, "knudsen": 0.09, "solidity": {"mesh": 0.06}},
+        "solve": {"permeability": 5.5 * 0.49e-12, "pressure_drop_slip": 1.0, "pressure_drop_no_slip": 1.1},
+    }
+    (place / "result.json").write_text(json.dumps(found))
+    (one,) = measured(tmp_path)
+    assert (one.slope, one.contact, one.seed) == (0.15, "clear", 3)
+    assert one.side == pytest.approx(10.0)
+    assert one.spacing == pytest.approx(0.5)
+    assert one.thickness == pytest.approx(20.0)
+    # without slip less goes through, by the ratio of the drops
+    assert one.permeability_slip == pytest.approx(5.5)
+    assert one.permeability == pytest.approx(5.0)
