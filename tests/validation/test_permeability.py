@@ -15,6 +15,7 @@ from validation.permeability import (
     interval,
     kinds,
     kinds_table,
+    measured,
     models_table,
     resistances,
 )
