@@ -41,8 +41,8 @@ MESHES = (
     ("snappy", 0.4, 1.0, True),
 )
 """Mesher, edge in fiber diameters, growth, and whether finite volumes are solved on it too."""
-FINEST = "tetwild", 0.3, 1.0
-"""Mesh whose elements stand for the limit."""
+FINE_ENOUGH = 0.4
+"""Edge of fTetWild's meshes from which on elements stand for a mat's limit: the finest of each mat is taken."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,10 +142,28 @@ def mat_runs(case: Case, folder: Path, progress: Progress = silent) -> Iterator[
                 yield partial(solved, mat_case(case, seed, mesher, edge, growth), place, volumes, progress)
 
 
+def limits(runs: Sequence[MatRun]) -> dict[int, tuple[float, MatRun | None]]:
+    """Give for every seed the pressure drop [Pa] that stands for its limit, and the run that it was taken from.
+
+    It is that of elements on the finest of fTetWild's meshes; where a mat has none that is fine enough, that on the
+    usual mesh less the mean error which the usual mesh has on the others.
+    """
+    own = [each for each in runs if each.mesher == "tetwild" and each.growth == 1.0 and math.isfinite(each.elements)]
+    found: dict[int, tuple[float, MatRun | None]] = {}
+    for each in sorted(own, key=lambda each: -each.edge):
+        if each.edge <= FINE_ENOUGH:
+            found[each.seed] = each.elements, each
+    usual = {each.seed: each.elements for each in own if each.edge == USUAL}
+    both = [usual[seed] / found[seed][0] for seed in usual if seed in found]
+    if both:
+        for seed in usual.keys() - found.keys():
+            found[seed] = usual[seed] / statistics.fmean(both), None
+    return found
+
+
 def edge_errors(runs: Sequence[MatRun]) -> list[EdgeError]:
-    """Tell, for every mesher, solver and edge, the errors against each mat's finest mesh."""
-    limit = {each.seed: each.elements for each in runs if (each.mesher, each.edge, each.growth) == FINEST}
-    found = []
+    """Tell, for every mesher, solver and edge, the errors against each mat's limit."""
+    limit, found = limits(runs), []
     for mesher, edge, growth, _ in MESHES:
         mesh = mesher, edge, growth
         group = [each for each in runs if (each.mesher, each.edge, each.growth) == mesh and each.seed in limit]
@@ -153,17 +171,19 @@ def edge_errors(runs: Sequence[MatRun]) -> list[EdgeError]:
             ("stokes", "elements", "elements_seconds"),
             ("openfoam", "volumes", "volumes_seconds"),
         ):
-            solved_runs = [each for each in group if math.isfinite(getattr(each, drop))]
-            if not solved_runs or (solver, mesh) == ("stokes", FINEST):
-                continue
-            errors = [getattr(each, drop) / limit[each.seed] - 1.0 for each in solved_runs]
-            found.append(
-                EdgeError(
-                    mesher, solver, edge, growth, len(errors), statistics.fmean(errors), min(errors), max(errors),
-                    statistics.fmean(each.cells / each.length for each in solved_runs),
-                    statistics.median((each.mesh_seconds + getattr(each, spent)) / each.length for each in solved_runs),
-                )
-            )  # fmt: skip
+            rows = [each for each in group if math.isfinite(getattr(each, drop))]
+            if (solver, mesher) == ("stokes", "tetwild") and growth == 1.0:
+                # no mesh is held against itself
+                rows = [each for each in rows if limit[each.seed][1] not in (each, None)]
+            if rows:
+                errors = [getattr(each, drop) / limit[each.seed][0] - 1.0 for each in rows]
+                found.append(
+                    EdgeError(
+                        mesher, solver, edge, growth, len(errors), statistics.fmean(errors), min(errors), max(errors),
+                        statistics.fmean(each.cells / each.length for each in rows),
+                        statistics.median((each.mesh_seconds + getattr(each, spent)) / each.length for each in rows),
+                    )
+                )  # fmt: skip
     return found
 
 

@@ -175,8 +175,8 @@ def kinds_table(rows: Sequence[Measured], found: Fit) -> str:
                 made,
                 str(len(group)),
                 f"{solidity:.1f} %",
-                f"{k:.3g} ± {half:.1g}",
-                f"{ratio:.2f} ± {ratio_half:.2f}",
+                f"{k:.3g}" + (f" ± {half:.1g}" if len(group) > 1 else ""),
+                f"{ratio:.2f}" + (f" ± {ratio_half:.2f}" if len(group) > 1 else ""),
                 f"{100.0 * gain:+.1f} % (Kn {first.knudsen:.3f})",
             ]
         )

@@ -17,6 +17,7 @@ from pathlib import Path
 FILE = Path(__file__).with_suffix(".json")
 _USUAL = 0.6  # default edge, whose growth is 1
 _SAME = 0.02
+_LEAST_ORDER = 1.0  # an error that falls more slowly with the edge is none of the mesh's alone, and has no trend
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,7 +196,8 @@ class Need:
 def needed_edge(mesher: str, solver: str, error: float, known: Sequence[EdgeError] | None = None) -> Need | None:
     """Estimate the edge that gives an error, by powers of the edge fitted to what was measured.
 
-    Where meshes were measured whose growth falls with their edge, those are followed: finite volumes see all cells.
+    For finite volumes, which see all cells, meshes whose growth falls with their edge are followed where they were
+    measured.
 
     Parameters
     ----------
@@ -209,7 +211,7 @@ def needed_edge(mesher: str, solver: str, error: float, known: Sequence[EdgeErro
     Returns
     -------
     Need or None
-        None where fewer than two edges were measured, or the error does not fall with them.
+        None where fewer than two edges were measured, or the error does not fall with them in first order.
 
     Examples
     --------
@@ -220,7 +222,7 @@ def needed_edge(mesher: str, solver: str, error: float, known: Sequence[EdgeErro
     """
     rows = [each for each in known or measured().edges if (each.mesher, each.solver) == (mesher, solver)]
     graded = [each for each in rows if abs(each.growth / each.edge - 1.0 / _USUAL) < _SAME * each.growth]
-    rows = graded if len(graded) > 1 else [each for each in rows if each.growth == 1.0]
+    rows = graded if solver == "openfoam" and len(graded) > 1 else [each for each in rows if each.growth == 1.0]
     if len(rows) < 2:
         return None
     edges = [each.edge for each in rows]
@@ -228,7 +230,7 @@ def needed_edge(mesher: str, solver: str, error: float, known: Sequence[EdgeErro
         _power(edges, values)
         for values in ([abs(r.mean) for r in rows], [r.cells for r in rows], [r.seconds for r in rows])
     )
-    if power <= 0.0:
+    if power < _LEAST_ORDER:
         return None
     edge = (error / scale) ** (1.0 / power)
     at = [each[0] * edge ** each[1] for each in (cells, seconds)]

@@ -45,7 +45,7 @@ def test_meshes_that_are_graded_with_their_edge_are_followed_where_they_were_mea
 
 
 def test_an_error_that_does_not_fall_with_the_edge_needs_no_edge() -> None:
-    assert needed_edge("lattice", "openfoam", 0.01, rows(order=-0.5)) is None
+    assert needed_edge("lattice", "openfoam", 0.01, rows(order=0.5)) is None
 
 
 @pytest.mark.parametrize(("mesher", "edge"), [("lattice", 0.39), ("lattice", 1.01), ("tetwild", 0.6)])
