@@ -9,7 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from pipeline.study.settings import read_study
 from validation.permeability import (
+    DATA,
+    STUDIES,
     Measured,
     fit,
     interval,
@@ -19,6 +22,7 @@ from validation.permeability import (
     models_table,
     resistances,
 )
+from validation.records import read_records
 
 
 def mats(noise: float = 0.0) -> list[Measured]:
@@ -94,3 +98,15 @@ def test_a_finished_run_of_a_study_is_read_in_diameters(tmp_path: Path) -> None:
     # without slip less goes through, by the ratio of the drops
     assert one.permeability_slip == pytest.approx(5.5)
     assert one.permeability == pytest.approx(5.0)
+
+
+def test_the_kept_data_are_of_the_bundled_studies_and_within_the_scatter_of_random_media() -> None:
+    rows = read_records(DATA, Measured)
+    assert {each.study for each in rows} <= {study.stem for study in STUDIES}
+    for study in STUDIES:
+        read_study(study)
+    # published fits and measurements of one medium differ by a factor of two and a half
+    for each in rows:
+        found = resistances()["Jackson and James (1986)"](each.solidity) * each.permeability / 4.0
+        assert 1.0 / 3.0 < found < 3.0
+        assert each.permeability_slip > each.permeability
