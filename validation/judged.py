@@ -38,13 +38,14 @@ class Judged(Generic[Answer]):
     order : float [-]
         In which power of the spacing the error against the exact value fell from the coarse to the fine mesh; nan
         where one of them is 0.
-    found : Convergence
-        What the three tell without the exact value; its extrapolation is of the resistance over the exact one.
+    found : Convergence or None
+        What the three tell without the exact value; its extrapolation is of the resistance over the exact one. None
+        where their spacings do not fall, as where an octree halves its cubes in gaps on one edge and not on the next.
     """
 
     rungs: list[Answer]
     order: float
-    found: Convergence
+    found: Convergence | None
 
     @property
     def fine(self) -> Answer:
@@ -57,9 +58,9 @@ def judged(rungs: Sequence[Answer]) -> list[Judged[Answer]]:
     results = []
     for start in range(0, len(rungs), MESHES):
         coarse, middle, fine = three = list(rungs[start : start + MESHES])
-        found = convergence(
-            (coarse.spacing, middle.spacing, fine.spacing), (1.0 + coarse.error, 1.0 + middle.error, 1.0 + fine.error)
-        )
+        spacings = coarse.spacing, middle.spacing, fine.spacing
+        answers = 1.0 + coarse.error, 1.0 + middle.error, 1.0 + fine.error
+        found = convergence(spacings, answers) if spacings[0] > spacings[1] > spacings[2] else None
         fall = abs(coarse.error / fine.error) if coarse.error and fine.error else math.nan
         results.append(Judged(three, math.log(fall) / math.log(coarse.spacing / fine.spacing), found))
     return results

@@ -68,8 +68,11 @@ _HEADS = ("coarse (cells)", "middle", "fine", "order", "observed", "extrapolated
 
 def _of_three(each: Judged[Rung] | Judged[LatticeRung]) -> list[str]:
     found = each.found
+    errors = [f"{_percent(rung.error)} ({rung.cells:,})" for rung in each.rungs]
+    if found is None:
+        return [*errors, _order(each.order), "", "", ""]
     return [
-        *(f"{_percent(rung.error)} ({rung.cells:,})" for rung in each.rungs),
+        *errors,
         _order(each.order),
         _order(found.order),
         _percent(found.extrapolated - 1.0),

@@ -108,10 +108,18 @@ def three_rungs() -> list[Rung]:
 def test_three_rungs_are_judged_together() -> None:
     (each,) = judged(three_rungs())
     assert each.fine.spacing == 0.1
+    assert each.found is not None
     assert each.found.order == pytest.approx(2.0)
     # against the exact value: from 0.68 % to 0.17 % over a spacing four times finer
     coarse, fine = 25.0 / RUNG.exact - 1.0, 24.875 / RUNG.exact - 1.0
     assert each.order == pytest.approx(math.log(coarse / fine) / math.log(4.0))
+
+
+def test_meshes_that_do_not_get_finer_tell_no_order_of_their_own() -> None:
+    coarse, middle, fine = three_rungs()
+    (each,) = judged([coarse, middle, replace(fine, spacing=0.21)])
+    assert each.found is None
+    assert ladder_table([coarse, middle, replace(fine, spacing=0.21)]).endswith("|  |  |  |")
 
 
 def test_the_table_shows_errors_in_percent_and_their_order() -> None:
