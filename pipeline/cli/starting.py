@@ -46,6 +46,21 @@ _FIRST_CASE: Mapping[str, str] = {
     "mean_free_path": '"65.3 nm"',
 }
 _FIRST_FILE = {"file": '"fibers.csv"', "surface": '"medium.stl"'}
+# The key that tells a table's kind, and what the keys that a kind must have are shown with.
+_KIND_OF_TABLE = ("distribution", "law")
+_WRITTEN: Mapping[str, str] = {
+    "diameter": '"1.4 um"',
+    "mean": '"1.4 um"',
+    "std": '"0.3 um"',
+    "median": '"1.2 um"',
+    "geometric_std": "1.5",
+    "min": '"0.8 um"',
+    "max": '"2 um"',
+    "parts": '[{weight = 3, diameter = "0.6 um"}, {weight = 1, diameter = {distribution = "lognormal", '
+    'median = "3 um", geometric_std = 1.3}}]',
+    "concentration": "10",
+    "ratio": "1.5",
+}
 _FIRST_STOP = {"layered": ("coverage", "1"), "box": ("solidity", '"10 %"')}
 
 
@@ -125,6 +140,26 @@ def _table(settings: type[BaseModel], generator: str) -> Iterator[str]:
             yield f"#{key.name} = {key.default}"
         else:
             yield f"#{key.name} = {_shown(key)}  # not set; this is an example"
+        yield from _other_ways(key)
+
+
+def _other_ways(key: Key) -> Iterator[str]:
+    """Show every table that may stand as the value of a key that takes text as well."""
+    if " or " not in key.takes:
+        return
+    if key.tables:
+        yield "# Or one of these, without the # and the blank before it:"
+    for table in key.tables:
+        yield f"# {key.name} = {_inline(table)}  # {summary(table)}"
+
+
+def _inline(table: type[BaseModel]) -> str:
+    """Write a table in one line: the key that says its kind, and those that it must have."""
+    kind = next(
+        (f'{name} = "{field.default}"' for name, field in table.model_fields.items() if name in _KIND_OF_TABLE), ""
+    )
+    needed = [f"{key.name} = {_WRITTEN[key.name]}" for key in keys(table) if key.required]
+    return f"{{{', '.join([kind, *needed])}}}"
 
 
 def _shown(key: Key) -> str:

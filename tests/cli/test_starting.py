@@ -39,6 +39,35 @@ def test_defaults_in_comments_are_what_holds_when_they_are_left_out(generator: s
     assert read_case(shown) == read_case(plain)
 
 
+@pytest.mark.parametrize("generator", ["layered", "box"])
+def test_every_way_to_write_diameters_and_directions_loads_when_it_is_uncommented(
+    generator: str, tmp_path: Path
+) -> None:
+    text = first_case(generator)
+    shown = re.findall(r"^# ((fiber_diameter|orientation) = \{.*)$", text, flags=re.MULTILINE)
+    kinds = {
+        f"{key} {match[1]}" for line, key in shown if (match := re.search(r'(?:distribution|law) = "(\w+)"', line))
+    }
+    # all laws of each, the mixture among them
+    tables = next(key for key in keys(Case) if key.name == "mat").tables
+    drawn = next(table for table in tables if table.model_fields["generator"].default == generator)
+    expected = {
+        f"{key.name} {table.model_fields[name].default}"
+        for key in keys(drawn)
+        if key.name in ("fiber_diameter", "orientation")
+        for table in key.tables
+        for name in ("distribution", "law")
+        if name in table.model_fields
+    }
+    assert kinds == expected
+    assert "fiber_diameter mixture" in kinds
+    for number, (line, key) in enumerate(shown):
+        path = tmp_path / f"{number}.toml"
+        path.write_text(re.sub(rf"^#?{key} = .*$", lambda _, line=line: line, text, count=1, flags=re.MULTILINE))
+        value = getattr(read_case(path).mat, key)
+        assert (getattr(value, "distribution", None) or value.law) in line
+
+
 def test_every_key_of_every_stage_stands_in_a_first_case() -> None:
     tables = tomllib.loads(re.sub(r"^#(?=[a-z_]+ = )", "", first_case("layered"), flags=re.MULTILINE))
     for key in keys(Case):
