@@ -47,7 +47,8 @@ class FlowSettings(BaseModel):
     particle_density: Density = Field(default=1000.0, description="density of the particles")
     preset: PresetName = Field(
         default="paper",
-        description="single-fiber model: what the paper computed, what its Table A6 computes, or Hinds' textbook form",
+        description="single-fiber model: what the paper computed (its slip term lowers interception, where slip raises "
+        "it), what its Table A6 computes, or Hinds' textbook form",
     )
     particle_spread: PositiveRatio = Field(
         default=1.0,

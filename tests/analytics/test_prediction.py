@@ -203,3 +203,18 @@ def test_the_papers_figures_are_drawn_alike_each_time_and_small(tmp_path: Path) 
         assert one.stat().st_size < 150_000
         assert ElementTree.parse(one).getroot().tag.endswith("svg")
         assert (GALLERY / one.name).exists()
+
+
+def test_the_papers_slip_term_is_told_by_how_much_it_lowers_interception() -> None:
+    medium = FilterSettings(solidity=0.135, thickness=16e-6, fiber_diameter=1.4e-6)
+
+    def rows(preset: str) -> dict[str, str]:
+        settings = FlowSettings(preset=preset)  # type: ignore[arg-type]
+        return {row[0]: row[1] for table in prediction_tables(predict(medium, settings)) for row in table.rows}
+
+    told = rows("paper")["slip in the preset paper (Eq. A11)"]
+    paper, simple = (
+        predict(medium, FlowSettings(preset=name)).single_fiber["interception"] for name in ("paper", "hinds")
+    )  # type: ignore[arg-type]
+    assert told.startswith(f"lowers interception by {1 - paper / simple:.0%}")
+    assert not [name for name in rows("hinds") if name.startswith("slip")]

@@ -4,11 +4,13 @@
 
 import math
 
+from pipeline.analytics.formulas.cell import hydrodynamic_factor
 from pipeline.analytics.formulas.classes import en_1822_class, iso_29463_class
 from pipeline.analytics.formulas.merit import HEPA_EFFICIENCY, HEPA_PRESSURE_DROP
 from pipeline.analytics.models.comparison import REFERENCE
 from pipeline.analytics.models.prediction import Prediction
 from pipeline.analytics.models.pressure_models import MODELS
+from pipeline.analytics.models.single_fiber import PRESETS
 from pipeline.analytics.models.thick import ThickMedium
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.section import Table
@@ -17,6 +19,7 @@ _TOLD_BY_PENETRATION = 0.99
 _LEAST_PENETRATION = 1e-6  # percent; below, digits of the efficiency are nines only
 
 
+_SEEN = 0.005
 _NOTHING = 1e-9
 """Penetration below which a number would say more than is known."""
 
@@ -107,6 +110,7 @@ def prediction_tables(prediction: Prediction) -> tuple[Table, ...]:
     if p.aerosol["spread"] > 1.0:
         results.append((f"aerosol of spread {p.aerosol['spread']:.3g}, by count", share(p.aerosol["count"])))
         results.append((f"aerosol of spread {p.aerosol['spread']:.3g}, by mass", share(p.aerosol["mass"])))
+    results += _about_slip(p)
     results.extend(("warning", text) for text in p.warnings)
     return (
         Table("Filter", ("", ""), medium),
@@ -118,6 +122,15 @@ def prediction_tables(prediction: Prediction) -> tuple[Table, ...]:
         ),
         Table("Filter performance", ("", ""), tuple(results)),
     )
+
+
+def _about_slip(p: Prediction) -> list[tuple[str, str]]:
+    """Say what the paper's slip term does to interception, where it does more than one can read off."""
+    lowered = p.knudsen / (float(hydrodynamic_factor(p.solidity)) + p.knudsen)
+    if PRESETS[p.preset].interception != "slip" or lowered < _SEEN:
+        return []
+    told = f"lowers interception by {lowered:.0%}, where slip would raise it; --preset hinds leaves it out"
+    return [(f"slip in the preset {p.preset} (Eq. A11)", told)]
 
 
 def _classes(p: Prediction) -> list[tuple[str, str]]:
