@@ -215,6 +215,6 @@ def test_the_papers_slip_term_is_told_by_how_much_it_lowers_interception() -> No
     told = rows("paper")["slip in the preset paper (Eq. A11)"]
     paper, simple = (
         predict(medium, FlowSettings(preset=name)).single_fiber["interception"] for name in ("paper", "hinds")
-    )  # type: ignore[arg-type]
+    )
     assert told.startswith(f"lowers interception by {1 - paper / simple:.0%}")
     assert not [name for name in rows("hinds") if name.startswith("slip")]

@@ -63,7 +63,9 @@ def test_every_way_to_write_diameters_and_directions_loads_when_it_is_uncommente
     assert "fiber_diameter mixture" in kinds
     for number, (line, key) in enumerate(shown):
         path = tmp_path / f"{number}.toml"
-        path.write_text(re.sub(rf"^#?{key} = .*$", lambda _, line=line: line, text, count=1, flags=re.MULTILINE))
+        place = re.search(rf"^#?{key} = .*$", text, flags=re.MULTILINE)
+        assert place
+        path.write_text(text[: place.start()] + line + text[place.end() :])
         value = getattr(read_case(path).mat, key)
         assert (getattr(value, "distribution", None) or value.law) in line
 

@@ -37,6 +37,19 @@ def test_a_solved_flow_takes_the_place_of_the_models_and_says_what_the_other_wal
     assert any("Without slip it is 13.8 Pa (+10.0%)" in note for note in found.notes)
 
 
+def test_what_is_known_of_such_meshes_gives_one_mesh_an_interval() -> None:
+    # such meshes were 1 % to 5 % high, so that the number is 12.5 / 1.05 to 12.5 / 1.01
+    known = dataclasses.replace(BOTH, mesh_error=(0.03, 0.01, 0.05), seed_spread=0.15)
+    found = headline(whole(known))
+    assert found is not None
+    assert (found.low, found.high) == pytest.approx((12.5 / 1.05, 12.5 / 1.01))
+    assert any("±30%" in note for note in found.notes)
+    alone = headline(whole(BOTH))
+    assert alone is not None
+    assert alone.interval == ""
+    assert "fibertwin converge" in alone.of
+
+
 def test_several_meshes_give_the_number_its_own_interval(tmp_path: Path) -> None:
     parts = Contributions(mesh=0.02, slip=0.1, box=None, seed=0.15)
     drop = ConvergedDrop("a", "stokes", "slip", Interval(12.0, 11.8, 12.3), 2.0, 12.0, (), parts, (12.0, 14.0))

@@ -129,8 +129,8 @@ def slab_of(mat: Mat, solution: Solution) -> Slab:
         inner=(low, high),
         solid_ratio=_slope(height, solid, low, high) * mat.thickness / float(solid[-1]),
         layers=tuple(np.diff(_at(height, fall, edges) / area / np.diff(edges).mean()).tolist()),
-        mesh_error=getattr(solution, "mesh_error", None),
-        seed_spread=getattr(solution, "seed_spread", None),
+        mesh_error=solution.mesh_error,
+        seed_spread=solution.seed_spread,
     )
 
 

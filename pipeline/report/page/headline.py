@@ -87,15 +87,14 @@ def _solved(s: Solution) -> Headline:
         other = s.pressure_drop_no_slip if s.fiber_wall == "slip" else s.pressure_drop_slip
         word = "Without" if s.fiber_wall == "slip" else "With"
         notes.append(f"{word} slip it is {other:.3g} Pa ({other / s.pressure_drop - 1.0:+.1%}).")
-    spread: float | None = getattr(s, "seed_spread", None)
+    spread = s.seed_spread
     if spread is not None:
         notes.append(f"Another seed of the same medium: ±{_TWO * spread:.0%}, two standard deviations of such mats.")
     what = f"pressure drop, {wall_of(s.fiber_wall)}"
-    error: tuple[float, float, float] | None = getattr(s, "mesh_error", None)
-    if error is None:
+    if s.mesh_error is None:
         of = "One mesh tells no interval; fibertwin converge solves on three and does."
         return Headline(what, s.pressure_drop, None, None, of, tuple(notes))
-    mean, least, most = error
+    mean, least, most = s.mesh_error
     # the number less its error, for the largest and the least error that meshes like this had
     low, high = sorted(s.pressure_drop / (1.0 + each) for each in (least, most))
     of = f"What such a mesh leaves: it was {mean:+.1%} off on other mats ({least:+.1%} to {most:+.1%})."
