@@ -212,11 +212,13 @@ def resistances() -> dict[str, Callable[[float], float]]:
 
 
 def figure(rows: Sequence[Measured], found: Fit) -> "Figure":
-    """Plot k/a^2 over solidity with the models, and over the side."""
+    """Plot k/a^2 over solidity with the models, and over the side where plans of several were drawn."""
     from matplotlib.figure import Figure
 
-    drawn = Figure(figsize=(11.0, 4.6), layout="constrained")
-    left, right = drawn.subplots(1, 2, width_ratios=(2, 1))
+    of_sides = kinds([each for each in rows if (each.contact, round(each.spacing, 3)) == _OF_SIDES])
+    sides = len({round(group[0].side, 3) for group in of_sides})
+    drawn = Figure(figsize=(11.0 if sides > 1 else 7.0, 4.6), layout="constrained")
+    left, *others = drawn.subplots(1, 2 if sides > 1 else 1, squeeze=False)[0]
     solidities = np.geomspace(found.low, found.high, 60)
     for title, resistance in resistances().items():
         left.loglog(solidities, [4.0 / resistance(s) for s in solidities], linewidth=1.0, label=title)
@@ -233,14 +235,15 @@ def figure(rows: Sequence[Measured], found: Fit) -> "Figure":
     left.set_ylabel("k/a2, without slip")
     left.grid(alpha=0.3, which="both")
     left.legend(fontsize="x-small")
-    for group in kinds([each for each in rows if (each.contact, round(each.spacing, 3)) == _OF_SIDES]):
-        ratios = [4.0 / each.permeability / (found.factor * each.solidity**found.power) for each in group]
-        mean, half = interval(ratios)
-        right.plot([group[0].side] * len(ratios), ratios, ".", color="#999999")
-        right.errorbar(group[0].side, mean, yerr=half, color="k", marker="o", capsize=3)
-    right.set_xlabel("side of the plan [diameters]")
-    right.set_ylabel("resistance over the fit")
-    right.grid(alpha=0.3)
+    for right in others:
+        for group in of_sides:
+            ratios = [4.0 / each.permeability / (found.factor * each.solidity**found.power) for each in group]
+            mean, half = interval(ratios)
+            right.plot([group[0].side] * len(ratios), ratios, ".", color="#999999")
+            right.errorbar(group[0].side, mean, yerr=half, color="k", marker="o", capsize=3)
+        right.set_xlabel("side of the plan [diameters]")
+        right.set_ylabel("resistance over the fit")
+        right.grid(alpha=0.3)
     return drawn
 
 

@@ -15,7 +15,7 @@ from validation.lattices import LatticeRung
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#1a1a1a")
+_COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#1a1a1a", "#56b4e9")
 
 
 def ladder_figure(arrays: Sequence[Rung], lattices: Sequence[LatticeRung]) -> "Figure":
@@ -36,6 +36,8 @@ def ladder_figure(arrays: Sequence[Rung], lattices: Sequence[LatticeRung]) -> "F
         spacings = np.array([0.15, 0.4])
         axes.loglog(spacings, 100.0 * spacings**3, "--", color="#777777", label="third order")
         axes.loglog(spacings, 30.0 * spacings**2, ":", color="#777777", label="second order")
+        axes.set_xticks([0.05, 0.1, 0.2, 0.4], ["0.05", "0.1", "0.2", "0.4"])
+        axes.minorticks_off()
         axes.set_title(title, fontsize="small", loc="left")
         axes.set_xlabel("(air volume / cells)^(1/3) [fiber diameters]")
         axes.grid(alpha=0.3, which="both")
@@ -65,6 +67,8 @@ def cost_figure(found: Sequence[EdgeError]) -> "Figure":
         for each in rows:
             axes.annotate(f"{each.edge:g}", (each.seconds, 100.0 * abs(each.mean)), fontsize=7)
     axes.axhline(1.0, color="#000000", linewidth=0.8)
+    axes.set_xticks([0.1, 0.2, 0.3, 0.5, 1.0], ["0.1", "0.2", "0.3", "0.5", "1"])
+    axes.minorticks_off()
     axes.set_xlabel("processor time for mesh and flow [s per diameter of fiber length]")
     axes.set_ylabel("mean error of the pressure drop, absolute [%]")
     axes.grid(alpha=0.3, which="both")
