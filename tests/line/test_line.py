@@ -105,7 +105,7 @@ def test_the_fibers_patch_lies_on_the_fibers(smoke: Run) -> None:
     cloud = np.einsum("tsk,tkx->tsx", weights, domain.points[triangles]).reshape(-1, 3)
     on_wall = np.unique(mesh.triangles()[mesh.patch(FIBERS)])
     distance, _ = cKDTree(cloud).query(mesh.points[on_wall])
-    # .04 of an envelope; the mender's leash, the fitting, and the gaps of the sampled cloud
+    # .04 of an envelope; what repairing may move a wall, the move onto the fibers, and the gaps of the sampled cloud
     assert np.percentile(distance, 99) < 0.1 * unit
 
 
