@@ -87,4 +87,4 @@ def _within(window: Box, start: Floats, end: Floats) -> tuple[Floats, Floats, Fl
         across, upper = plane[n][cut] // 2, plane[n][cut] % 2
         ends[cut, n, across] = np.where(upper == 1, np.array(window.upper)[across], np.array(window.lower)[across])
     # what rounding moves over another plane comes back
-    return enter, leave, np.clip(ends, window.lower, window.upper) if len(ends) else ends
+    return enter, leave, np.clip(ends, window.lower, window.upper)

@@ -49,3 +49,19 @@ def test_all_mistakes_come_at_once_by_the_names_of_the_options() -> None:
         "--wind:",
     ]
     assert "is missing" in lines[2]
+
+
+@pytest.mark.parametrize(
+    ("key", "last", "beyond"),
+    [
+        # Sutherland's law holds to about 1 % from 170 to 1900 K (U.S. Standard Atmosphere), the ideal gas up to 100 bar
+        ("temperature", "170 K", "169.9 K"),
+        ("temperature", "1900 K", "1901 K"),
+        ("pressure", "100 bar", "101 bar"),
+    ],
+)
+def test_the_laws_of_air_are_used_up_to_their_limits_and_no_farther(key: str, last: str, beyond: str) -> None:
+    medium = {"solidity": "5 %", "thickness": "1 mm", "fiber_diameter": "2 um"}
+    read_options({**medium, key: last})
+    with pytest.raises(CaseError, match=f"{key} is"):
+        read_options({**medium, key: beyond})
