@@ -123,3 +123,47 @@ def test_the_inputs_of_a_stage_are_the_files_of_the_nouns_it_needs(folder: Path)
     manifest = Run(CASE, folder).manifest("surface")
     assert manifest is not None
     assert set(manifest["inputs"]) == {"mat/mat.npz"}
+
+
+def with_manifest(folder: Path, part: str, change: dict[str, Any], gone: int = 0) -> tuple[str, ...]:
+    """Why the mat is made again when its manifest tells otherwise in one part, and lacks the first of its entries."""
+    path = folder / "mat" / "manifest.json"
+    content = read_json(path)
+    rest = dict(list(content[part].items())[gone:])
+    write_json(path, {**content, part: {**rest, **change}})
+    return whys(run(CASE, folder, until="mat"))["mat"]
+
+
+def test_three_files_are_named_and_the_others_counted(folder: Path) -> None:
+    files = list(read_json(folder / "mat" / "manifest.json")["code"])
+    assert len(files) > 6
+    told = with_manifest(folder, "code", {}, gone=5)
+    assert told == (*(f"{name} is new" for name in files[:3]), "2 more files changed")
+    assert with_manifest(folder, "code", {}, gone=3) == tuple(f"{name} is new" for name in files[:3])
+    assert with_manifest(folder, "code", {"pipeline/old.py": "0"}) == ("pipeline/old.py is gone",)
+
+
+def test_libraries_that_come_or_go_are_named(folder: Path) -> None:
+    now = read_json(folder / "mat" / "manifest.json")["libraries"]
+    first = next(iter(now))
+    assert with_manifest(folder, "libraries", {}, gone=1) == (f"{first} not there -> {now[first]}",)
+    assert with_manifest(folder, "libraries", {"oldlib": "1.0"}) == ("oldlib 1.0 -> not there",)
+
+
+def test_long_values_are_cut_and_many_settings_counted(folder: Path) -> None:
+    mat = read_json(folder / "mat" / "manifest.json")["parameters"]["mat"]
+    told = with_manifest(folder, "parameters", {"mat": {**mat, "side": "x" * 61}})
+    assert told == (f"mat.side changed from {'x' * 60}... to {mat['side']}",)
+    told = with_manifest(folder, "parameters", {"mat": {**mat, "side": "x" * 60}})
+    assert told == (f"mat.side changed from {'x' * 60} to {mat['side']}",)
+    told = with_manifest(folder, "parameters", {"mat": {**mat, "a": 1, "b": 2, "c": 3, "d": 4}})
+    assert told == (
+        *(f"mat.{name} changed from {k} to nothing" for k, name in enumerate("abc", 1)),
+        "1 more settings changed",
+    )
+
+
+def test_a_key_of_another_content_is_damage(folder: Path) -> None:
+    path = folder / "mat" / "manifest.json"
+    write_json(path, {**read_json(path), "key": "0" * 64})
+    assert whys(run(CASE, folder, until="mat"))["mat"] == ("its manifest is damaged",)
