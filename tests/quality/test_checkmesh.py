@@ -175,3 +175,25 @@ def test_flat_meshes_have_checkmeshs_determinants_and_aspect_ratios(
         ours = getattr(report.metrics[metric], which)
         assert ours == pytest.approx(said[name], rel=1e-5, abs=1e-10), name
     assert report.metrics["determinant"].over_limit == 0
+
+
+@pytest.mark.parametrize(("size", "verdict"), [((1, 1, 2), "warn"), ((1, 2, 2), "warn"), ((2, 2, 2), "pass")])
+def test_meshes_of_one_cell_across_have_no_determinant_for_checkmesh_either(
+    size: tuple[int, int, int], verdict: str, tmp_path: Path
+) -> None:
+    # only inner faces count: fewer than three directions of them leave a gradient undetermined
+    write_openfoam(duct((3, 3, 5)).face_mesh(), tmp_path, AIR)
+    shutil.rmtree(tmp_path / "constant/polyMesh")
+    counts = " ".join(map(str, size))
+    (tmp_path / "system/blockMeshDict").write_text(
+        BLOCK.replace("(8 8 16) simpleGrading (1 2 1)", f"({counts}) simpleGrading (1 1 1)")
+    )
+    foam(tmp_path, "blockMesh")
+    report, text = judge(read_openfoam(tmp_path)), foam(tmp_path, "checkMesh", "-allGeometry", "-allTopology")
+    assert report.verdict == verdict
+    assert ("Mesh OK" in text) == (verdict == "pass")
+    # plain checkMesh does not look at it, and solvers run: no failure
+    assert "Mesh OK" in foam(tmp_path, "checkMesh")
+    if verdict == "warn":
+        assert report.metrics["determinant"].max == 0.0
+        assert f"small determinant (< 0.001) found, number of cells: {report.cells}" in text
