@@ -34,7 +34,7 @@ def measure_picture(
 ) -> None:
     """Measure a picture, print what was seen, and write its page and its case."""
     picture = read_micrograph(path, read_length(pixel, "--pixel"), read_length(bar, "--bar"), _window(window))
-    if case is not None and case.exists():
+    if case is not None and os.path.lexists(case):
         raise CaseError(f"{case} is there already; name another file for the case")
     measured = measure(picture)
     if case is not None:

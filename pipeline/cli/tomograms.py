@@ -4,6 +4,7 @@
 
 import dataclasses
 import json
+import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -49,7 +50,7 @@ def surface_of_tomogram(
     into = surface or Path("runs") / path.stem / "surface.vtp"
     if into.suffix.lower() not in (".vtp", ".ply", ".stl"):
         raise CaseError(f"--surface {into}: write .vtp (64 bits), .ply or .stl")
-    if case is not None and case.exists():
+    if case is not None and os.path.lexists(case):
         raise CaseError(f"{case} is there already; name another file for the case")
     progress(f"reading {path.name}")
     gray = read_voxels(path, _whole(window, 6, "--window"), _whole(shape, 3, "--shape"), kind)
@@ -103,6 +104,8 @@ def _write(path: Path, points: np.ndarray[Any, Any], triangles: np.ndarray[Any, 
     import pyvista as pv
 
     path.parent.mkdir(parents=True, exist_ok=True)
+    # VTK says nothing, or not what is wrong, where it cannot write
+    path.write_bytes(b"")
     pv.PolyData.from_regular_faces(points * 1e6, triangles).save(path)
 
 

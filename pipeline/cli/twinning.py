@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import json
+import os
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -37,7 +38,7 @@ def find_twin(
 ) -> int:
     """Find the twin, write its case, tell what it has of what was measured, and give the exit code."""
     measured = _measured(file, options)
-    if case is not None and case.exists():
+    if case is not None and os.path.lexists(case):
         raise CaseError(f"{case} is there already; name another file for the case")
     if solve and measured.drop is None:
         raise CaseError(

@@ -130,7 +130,7 @@ def disk_trouble_explained(place: Path) -> Iterator[None]:
     try:
         yield
     except OSError as problem:
-        if problem.errno not in _DISK_TROUBLE:
+        if problem.errno not in _DISK_TROUBLE and not _is_gone(place, problem):
             raise
         blocked = problem.errno in (errno.EEXIST, errno.ENOTDIR)
         reason = "a file stands where a folder should" if blocked else os.strerror(problem.errno or 0).lower()
@@ -138,6 +138,17 @@ def disk_trouble_explained(place: Path) -> Iterator[None]:
             f"cannot write {problem.filename or place}: {reason}; "
             "nothing half-written was kept; free space, or choose another place"
         ) from problem
+
+
+def _is_gone(place: Path, problem: OSError) -> bool:
+    """Whether nothing can be written since the place, or a folder on the way to it, is not there or was removed.
+
+    A link to nothing is such a place. Any other file that is missing is a fault of the program's.
+    """
+    if problem.errno != errno.ENOENT:
+        return False
+    named = Path(os.fsdecode(problem.filename)) if problem.filename is not None else place
+    return named == place or named in place.parents or not place.parent.is_dir()
 
 
 @contextlib.contextmanager

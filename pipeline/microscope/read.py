@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from pipeline.errors import CaseError
 from pipeline.isolated import isolated
+from pipeline.line.store import DAMAGE
 from pipeline.microscope.picture import Micrograph
 from pipeline.microscope.scale import bar_length, credible, scale_of_tiff
 from pipeline.microscope.strip import strip_rows
@@ -148,7 +149,7 @@ def _read_tiff(path: Path, window: Window | None) -> Raw:
                 # its other compressions want a library of their own, which Pillow brings
                 return Raw(_read_other(path).pixels, scale)
             return Raw(_gray(page.asarray(), path), scale)
-    except (tifffile.TiffFileError, ValueError, IndexError, KeyError, TypeError, OSError) as problem:
+    except DAMAGE as problem:
         raise CaseError(f"{path} is damaged, or no TIFF that can be read: {problem}") from problem
 
 

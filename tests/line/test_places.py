@@ -10,7 +10,7 @@ import pytest
 
 from pipeline.errors import StageError
 from pipeline.line import places
-from pipeline.line.places import locked, own_file, own_folder, remove, side_folder, write_text
+from pipeline.line.places import disk_trouble_explained, locked, own_file, own_folder, remove, side_folder, write_text
 
 
 @pytest.fixture
@@ -170,3 +170,22 @@ def test_a_folder_whose_name_is_no_text_is_refused(tmp_path: Path) -> None:
     with pytest.raises(StageError, match="no text in UTF-8"), locked(tmp_path / "caf\udce9"):
         pass
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_place_that_is_not_there_or_was_removed_is_explained_and_other_missing_files_are_not(tmp_path: Path) -> None:
+    dangling = tmp_path / "page.html"
+    dangling.symlink_to(tmp_path / "nowhere" / "page.html")
+    with pytest.raises(StageError, match=r"cannot write .*page\.html: no such file"), disk_trouble_explained(dangling):
+        dangling.write_text("page")
+    run = tmp_path / "run"
+
+    def removed_meanwhile() -> None:
+        with side_folder(run / "mat") as side:
+            remove(run)
+            (side / "mat.npz").write_text("a")
+
+    with pytest.raises(StageError, match="no such file or directory"):
+        removed_meanwhile()
+    other = tmp_path / "something" / "else"
+    with pytest.raises(FileNotFoundError), side_folder(run / "mat"):
+        other.read_text()

@@ -137,3 +137,14 @@ def test_a_number_of_a_noun_is_a_number(value: str, tmp_path: Path) -> None:
         store.load_json(MeshingCost, tmp_path / "cost.json")
     (tmp_path / "cost.json").write_text('{"seconds": 2, "peak_memory": 1}')
     assert store.load_json(MeshingCost, tmp_path / "cost.json") == MeshingCost(2.0, 1)
+
+
+def test_arrays_of_another_type_and_things_that_are_no_json_are_refused(tmp_path: Path) -> None:
+    store.save(CROSSING, tmp_path / "mat.npz")
+    arrays = store.read_arrays(tmp_path / "mat.npz")
+    np.savez(tmp_path / "mat.npz", **{**arrays, "radius": arrays["radius"].astype(np.float32)})
+    with pytest.raises(StageError, match="radius holds float32, not float64"):
+        store.load(Mat, tmp_path / "mat.npz")
+    with pytest.raises(TypeError, match="set is not JSON"):
+        store.write_json(tmp_path / "set.json", {"a": {1}})
+    assert store.LARGEST_INTEGER == 9_223_372_036_854_775_807

@@ -57,7 +57,6 @@ VARIANTS = {
     "snappyHexMesh on two cores": Variant(
         "quality", ("tetmesh.engine=snappy", "tetmesh.snappy.cores=2"), _AFTER, "snappyHexMesh"
     ),
-    # a solution tells its seconds; tests/solve compares the rest digit by digit
     "the flow, by elements": Variant("solve", ("tetmesh.engine=lattice",), ("solve", "report")),
     "the flow, by OpenFOAM": Variant(
         "solve", ("tetmesh.engine=lattice", "solve.engine=openfoam"), ("solve", "report"), "simpleFoam"
@@ -114,7 +113,10 @@ class Kills:
             manifest = read_manifest(stage)
             assert manifest is not None, f"{stage} has no manifest"
             for name, digest in manifest["files"].items():
-                same = stage.name not in self.variant.random
+                same = stage.name not in self.variant.random or name == "solution.json"
+                if stage.name == "solve" and "/" in name:
+                    # how many states a solver keeps depends on how often it was started
+                    continue
                 found[f"{stage.name}/{name}"] = (
                     hashlib.sha256((stage / name).read_bytes()).hexdigest() if same else "there"
                 )

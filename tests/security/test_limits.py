@@ -23,6 +23,7 @@ from pipeline.export.read import read_mesh
 from pipeline.export.settings import ExportSettings
 from pipeline.line.run import Run
 from pipeline.mat import exchange
+from pipeline.microscope.read import read_micrograph
 from pipeline.units import parse
 from tests.openfoam import AIR
 from tests.sample_meshes import duct
@@ -192,3 +193,11 @@ def test_a_number_too_few_in_a_text_file_is_our_error(tmp_path: Path) -> None:
     path.write_bytes(seeds()["polyhedra.vtu"].replace(b"0 0 0 ", b"0 0 ", 1))
     with pytest.raises(StageError, match="cannot read"):
         read_mesh(path)
+
+
+@pytest.mark.parametrize("content", [b"II*\0", b"MM\0*", b"II+\0\x08\0", b"II*\0\x08\0\0\0"])
+def test_the_head_of_a_picture_alone_is_no_picture(content: bytes, tmp_path: Path) -> None:
+    path = tmp_path / "cut.tif"
+    path.write_bytes(content)
+    with pytest.raises(CaseError, match=r"cut\.tif is damaged, or no TIFF that can be read"):
+        read_micrograph(path, 25e-9)
