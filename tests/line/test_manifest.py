@@ -65,23 +65,27 @@ def test_a_lost_record_is_no_damage_and_a_changed_or_linked_result_is(stage: Pat
 
 
 TABLES = ("sources", "inputs", "code", "libraries", "files", "records")
-WRONG: list[tuple[str, Any]] = [
-    *((name, wrong) for name in TABLES for wrong in (None, [], "x", {"a": 1}, {"a": None})),
-    *((name, wrong) for name in ("stage", "key") for wrong in (None, 1, ["mat"])),
-    *((name, wrong) for name in ("parameters", "counts") for wrong in (None, [], "x")),
-    *(
-        (name, wrong)
-        for name in ("seconds", "peak_memory")
-        for wrong in (None, "1", True, -1, LARGEST_INTEGER + 1, 1e19, [1])
-    ),
-    *(("why", wrong) for wrong in (None, "x", {}, [1], ["a", None])),
-    *(("counts", {"a": wrong}) for wrong in ({}, [[1]], [None], [True], LARGEST_INTEGER + 1, -(2**64))),
-    *((name, {wrong: "d"}) for name in ("files", "records") for wrong in ("", ".", "/a", "../a", "a/../../b", "a\0b")),
+
+
+def each(names: tuple[str, ...], *wrongs: object) -> list[tuple[str, object]]:
+    return [(name, wrong) for name in names for wrong in wrongs]
+
+
+PATHS = ("", ".", "/a", "../a", "a/../../b", "a\0b")
+VALUES: tuple[object, ...] = ({}, [[1]], [None], [True], LARGEST_INTEGER + 1, -(2**64))
+WRONG = [
+    *each(TABLES, None, [], "x", {"a": 1}, {"a": None}),
+    *each(("stage", "key"), None, 1, ["mat"]),
+    *each(("parameters", "counts"), None, [], "x"),
+    *each(("seconds", "peak_memory"), None, "1", True, -1, LARGEST_INTEGER + 1, 1e19, [1]),
+    *each(("why",), None, "x", {}, [1], ["a", None]),
+    *each(("counts",), *({"a": value} for value in VALUES)),
+    *each(("files", "records"), *({path: "d"} for path in PATHS)),
 ]
 
 
 @pytest.mark.parametrize(("name", "wrong"), WRONG)
-def test_what_none_of_ours_holds_is_no_manifest(stage: Path, name: str, wrong: Any) -> None:
+def test_what_none_of_ours_holds_is_no_manifest(stage: Path, name: str, wrong: object) -> None:
     assert with_another(stage, {name: wrong}) is None
 
 

@@ -5,6 +5,7 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -141,8 +142,9 @@ def test_a_number_of_a_noun_is_a_number(value: str, tmp_path: Path) -> None:
 
 def test_arrays_of_another_type_and_things_that_are_no_json_are_refused(tmp_path: Path) -> None:
     store.save(CROSSING, tmp_path / "mat.npz")
-    arrays = store.read_arrays(tmp_path / "mat.npz")
-    np.savez(tmp_path / "mat.npz", **{**arrays, "radius": arrays["radius"].astype(np.float32)})
+    arrays: dict[str, Any] = dict(store.read_arrays(tmp_path / "mat.npz"))
+    arrays["radius"] = arrays["radius"].astype(np.float32)
+    np.savez(tmp_path / "mat.npz", **arrays)
     with pytest.raises(StageError, match="radius holds float32, not float64"):
         store.load(Mat, tmp_path / "mat.npz")
     with pytest.raises(TypeError, match="set is not JSON"):

@@ -11,7 +11,7 @@ from pipeline.mat.windows import cut_to, lengths_within
 WHOLE = Box((0.1, 0.2, 0.3), (1.1, 0.9, 0.7))
 
 
-def lines(seed: int, fibers: int = 200) -> tuple[np.ndarray[tuple[int, int], np.dtype[np.float64]], np.ndarray]:  # type: ignore[type-arg]
+def lines(seed: int, fibers: int = 200) -> tuple[np.ndarray[tuple[int, int], np.dtype[np.float64]], np.ndarray]:
     """Crooked lines of two to six nodes around and through the window."""
     draw = np.random.default_rng(seed)
     counts = draw.integers(2, 7, fibers)
@@ -19,7 +19,7 @@ def lines(seed: int, fibers: int = 200) -> tuple[np.ndarray[tuple[int, int], np.
     return nodes, np.concatenate([[0], np.cumsum(counts)])
 
 
-def length(nodes: np.ndarray, first: np.ndarray) -> float:  # type: ignore[type-arg]
+def length(nodes: np.ndarray, first: np.ndarray) -> float:
     steps = np.linalg.norm(np.diff(nodes, axis=0), axis=1)
     steps[first[1:-1] - 1] = 0.0
     return float(steps.sum())
