@@ -6,6 +6,8 @@ import dataclasses
 import json
 from pathlib import Path
 
+import pytest
+
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.convergence import RESULT, Contributions, ConvergedDrop, Interval
 from pipeline.report.page import words
