@@ -4,6 +4,7 @@
 
 import json
 import os
+import re
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -201,3 +202,13 @@ def test_the_head_of_a_picture_alone_is_no_picture(content: bytes, tmp_path: Pat
     path.write_bytes(content)
     with pytest.raises(CaseError, match=r"cut\.tif is damaged, or no TIFF that can be read"):
         read_micrograph(path, 25e-9)
+
+
+def test_polyhedra_without_faces_are_our_error(tmp_path: Path) -> None:
+    path = tmp_path / "bare.vtu"
+    whole = seeds()["polyhedra.vtu"]
+    path.write_bytes(
+        re.sub(rb'<DataArray type="Int64" Name="face(s|offsets)".*?</DataArray>\n', b"", whole, flags=re.DOTALL)
+    )
+    with pytest.raises(StageError, match=r"cannot read .*bare\.vtu: "):
+        read_mesh(path)

@@ -157,6 +157,7 @@ def _polyhedra(grid: Any, cells: Ints) -> PolyhedralCells:
     if not hasattr(grid, "GetPolyhedronFaces"):
         return _older_polyhedra(grid, cells)
     faces, of_cells = grid.GetPolyhedronFaces(), grid.GetPolyhedronFaceLocations()
+    require(faces is not None and of_cells is not None, "it has polyhedra without faces")
     ends, listed = (
         (
             np.asarray(vtk_to_numpy(part.GetOffsetsArray()), np.int64),
@@ -175,6 +176,7 @@ def _older_polyhedra(grid: Any, cells: Ints) -> PolyhedralCells:
     """Before VTK 9.4: a list of how many faces, then for each how many corners and these, for each cell."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
+    require(grid.GetFaces() is not None, "it has polyhedra without faces")
     listed = vtk_to_numpy(grid.GetFaces()).tolist()
     places = vtk_to_numpy(grid.GetFaceLocations())[cells].tolist()
     ends, corners, of_cell = [0], list[int](), list[int]()
