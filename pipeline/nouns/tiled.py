@@ -23,7 +23,8 @@ class TileReport:
         Faces that it shares with other tiles.
     volume : float [m3]
     verdict : str
-        As in `QualityReport`, of its cells and of all their faces, those toward other tiles included.
+        As in `QualityReport`, of its cells and of all their faces, those toward other tiles included; ``fail`` too
+        where its walls are farther off than the case allows.
     reasons : tuple of str
         What does not hold.
     max_non_orthogonality : float [degree]
@@ -66,7 +67,7 @@ class TiledMesh:
     volume_error : float [-]
         Of the fibers against their surface; above 0 they are too thick.
     verdict : str
-        The worst of the tiles'.
+        The worst of the tiles', or ``fail`` where the fibers' volume is further off than the case allows.
     cut_off_cells : int
         Cells of pockets of air between tiles that no way leads to; they are left out.
     strip_seconds : float [s]

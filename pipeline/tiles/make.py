@@ -12,14 +12,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pipeline.case import Case
-from pipeline.errors import StageError
+from pipeline.errors import CaseError, StageError
 from pipeline.export.formats.openfoam.case import write_around_processors
 from pipeline.geometry.parts import parts
 from pipeline.line import store
 from pipeline.line.places import own_file
 from pipeline.line.run import Run, run
 from pipeline.mesh.estimate import slenderness
-from pipeline.mesh.tiles.plan import TilePlan, plan
+from pipeline.mesh.make import obstacle
+from pipeline.mesh.tiles.plan import TilePlan, plan, refuse_uncut
 from pipeline.nouns.arrays import Bools
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.tiled import RESULT, TiledMesh, TileReport
@@ -71,6 +72,9 @@ def tiled(
         If a piece fails.
     """
     began = time.monotonic()
+    refuse_uncut(case.tetmesh, case.enclosure.sides == "cyclic")
+    if (reason := obstacle(Run(case, folder))) is not None:
+        raise CaseError(reason)
     run(case, folder, "enclosure", progress=progress, without=frozenset({"report"}))
     domain = Run(case, folder).read(FluidDomain)
     cut = plan(domain, case.tetmesh, counts)
@@ -92,13 +96,15 @@ def tiled(
         (place / f"piece{piece.number}.npz").unlink()
     write_around_processors(place / CASE, cut.tiles, case.flow.flow(), case.enclosure.sides, case.export)
     volume = sum(each.volume for each in reports)
+    error = domain.volume_error(volume)
+    worst = max((each.verdict for each in reports), key=_WORST.index)
     found = TiledMesh(
         counts=counts,
         tiles=tuple(reports),
         cells=sum(each.cells for each in reports),
         fluid_volume=volume,
-        volume_error=domain.volume_error(volume),
-        verdict=max((each.verdict for each in reports), key=_WORST.index),
+        volume_error=error,
+        verdict=worst if abs(error) <= case.tetmesh.volume_error else "fail",
         cut_off_cells=lost,
         strip_seconds=sum(each.seconds for each in made if each.number < cut.strips),
         seconds=time.monotonic() - began,

@@ -161,6 +161,12 @@ def write_tile(run: Path, folder: Path, plan: TilePlan, made: Made, kept: Bools)
     mean, typical, _ = wall_deviation(mesh, domain)
     if not (report.metrics["volume"].min > 0.0):
         raise StageError(f"tile {number} holds cells without volume: {'; '.join(report.reasons)}; lower tetmesh.edge")
+    verdict, reasons, allowed = report.verdict, report.reasons, case.tetmesh.deviation
+    if typical > allowed:
+        told = (
+            f"a hundredth of its walls is farther than {typical:.3g} diameters from its fiber, allowed is {allowed:g}"
+        )
+        verdict, reasons = "fail", (told, *reasons)
     return TileReport(
         tile=number,
         neighbors=tile.neighbors,
@@ -168,8 +174,8 @@ def write_tile(run: Path, folder: Path, plan: TilePlan, made: Made, kept: Bools)
         points=len(mesh.points),
         interface_faces=sum(patch.count for patch in mesh.patches[len(domain.patches) :]),
         volume=mesh.volume,
-        verdict=report.verdict,
-        reasons=report.reasons,
+        verdict=verdict,
+        reasons=reasons,
         max_non_orthogonality=report.metrics["non_orthogonality"].max,
         max_skewness=report.metrics["skewness"].max,
         mean_deviation=mean,

@@ -112,7 +112,13 @@ def test_pockets_that_no_way_leads_to_are_found_across_tiles() -> None:
 
 @pytest.mark.parametrize(
     ("wrong", "words"),
-    [(["--tiles", "4"], "like 2x2"), (["--tiles", "0x2"], "like 2x2"), (["--workers", "0"], "one or more")],
+    [
+        (["--set", "tetmesh.engine=tetwild"], 'need tetmesh.engine = "lattice"'),
+        (["--set", "mat.periodic=true", "--set", "enclosure.sides=cyclic"], "cyclic sides are not cut"),
+        (["--tiles", "4"], "like 2x2"),
+        (["--tiles", "0x2"], "like 2x2"),
+        (["--workers", "0"], "one or more"),
+    ],
 )
 def test_nonsense_is_refused_before_anything_is_made(tmp_path: Path, wrong: list[str], words: str) -> None:
     (tmp_path / "case.toml").write_text(MAT, encoding="utf-8")

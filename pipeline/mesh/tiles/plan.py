@@ -128,6 +128,22 @@ class TilePlan:
         return found
 
 
+def refuse_uncut(settings: TetmeshSettings, cyclic: bool) -> None:
+    """Refuse what no tiles are made of.
+
+    Raises
+    ------
+    CaseError
+    """
+    if settings.engine != "lattice":
+        raise CaseError(
+            f'tiles need tetmesh.engine = "lattice", whose cells are the same whoever makes them; it is '
+            f'"{settings.engine}"'
+        )
+    if cyclic:
+        raise CaseError('tiles need enclosure.sides = "symmetry" or "slip": cyclic sides are not cut into tiles')
+
+
 def plan(domain: FluidDomain, settings: TetmeshSettings, tiles: tuple[int, int]) -> TilePlan:
     """Cut a duct into tiles of one size.
 
@@ -150,13 +166,7 @@ def plan(domain: FluidDomain, settings: TetmeshSettings, tiles: tuple[int, int])
     """
     from pipeline.mesh.engines.lattice.lattice import cubes_of
 
-    if settings.engine != "lattice":
-        raise CaseError(
-            f'tiles need tetmesh.engine = "lattice", whose cells are the same whoever makes them; it is '
-            f'"{settings.engine}"'
-        )
-    if domain.cyclic:
-        raise CaseError('tiles need enclosure.sides = "symmetry" or "slip": cyclic sides are not cut into tiles')
+    refuse_uncut(settings, domain.cyclic)
     _, edge, largest = cubes_of(domain, settings)
     reach = max(_STRIP * settings.edge * 2.0 * float(domain.radius.max()), largest * float(edge.max()))
     cuts = []
