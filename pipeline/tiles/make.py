@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 FOLDER = "tiles"
 """Folder in a run's that holds the pieces, the case and what is told of them."""
 _WORST = ("pass", "warn", "fail")
-_OVERLAP = 1.4  # memory of a tile over its share of the whole mesh's, for the strips beside it
+_PROCESS, _CELL = 2.7e8, 1200.0  # bytes of a process, and for each cell of its tile: docs/meshing.md
 
 
 def tiled(
@@ -117,7 +117,7 @@ def _announce(case: Case, domain: FluidDomain, cut: TilePlan, progress: Progress
     estimate = case.tetmesh.mesher.estimate
     if estimate is not None:
         whole = estimate(slenderness(domain), case.tetmesh)
-        each = _OVERLAP * whole.memory / cut.tiles
+        each = _PROCESS + _CELL * whole.cells / cut.tiles
         progress(
             f"{NOTE}some {whole.cells:,.2g} cells in {cut.tiles} tiles, about {each / 2**30:.1f} GiB for each process"
         )

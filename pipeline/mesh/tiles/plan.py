@@ -172,11 +172,14 @@ def plan(domain: FluidDomain, settings: TetmeshSettings, tiles: tuple[int, int])
     cuts = []
     for axis, count in enumerate(tiles):
         lower, size = domain.box.lower[axis], domain.box.size[axis]
-        narrowest = 2.0 * reach + largest * float(edge[axis])
+        # a tile between two cuts holds half a strip at either side, one at the end of the duct at one side
+        between, at_end = 2.0 * reach + largest * float(edge[axis]), reach + largest * float(edge[axis])
+        narrowest = between if count > 2 else at_end
         if count > 1 and size / count < narrowest:
+            most = max(int(size / between), 2 if size >= 2.0 * at_end else 1)
             raise CaseError(
                 f"{count} tiles along {'xy'[axis]} are {1e6 * size / count:.3g} um wide, and what is repaired on both "
-                f"sides of a cut takes {1e6 * narrowest:.3g} um; take at most {int(size / narrowest)}"
+                f"sides of a cut takes {1e6 * narrowest:.3g} um; take at most {most}"
             )
         step = 0.5 * float(edge[axis])
         places = np.round(np.arange(1, count) * size / count / step) + _OFF
