@@ -229,3 +229,18 @@ def test_perimeter_chords_make_the_frame_denser_and_isotropic_ones_do_not() -> N
     points = corner[0] + rng.random((60_000, 1)) * (corner[1] - corner[0])
     outside = float(weight[np.abs(points - 0.5).max(axis=1) > 0.4].sum() / weight.sum())
     assert densities["perimeter"] == pytest.approx(outside / 0.36 / ((1 - outside) / 0.64), abs=0.03)
+
+
+def test_each_fiber_is_in_the_layers_that_it_lies_in_and_in_no_other() -> None:
+    # two flat fibers of radius 0.2, and one that rises from the first layer's middle to the last one's
+    nodes = np.array([[0.0, 1, 0.5], [4, 1, 0.5], [0, 3, 2.5], [4, 3, 2.5], [0, 2, 0.5], [4, 2, 3.5]])
+    slab = Box((0.0, 0.0, 0.0), (4.0, 4.0, 4.0))
+    radius = np.array([0.2, 0.2, 0.1])
+    flat = Mat(nodes[:4], np.array([0, 2, 4]), radius[:2], slab, -1, "by hand")
+    one = np.pi * 0.2**2 * 4.0 / 16.0
+    assert solidity_profile(flat, np.ones(2), 4) == pytest.approx([one, 0.0, one, 0.0], rel=1e-12, abs=1e-15)
+    rising = Mat(nodes[[2, 3, 4, 5]], np.array([0, 2, 4]), radius[[0, 2]], slab, -1, "by hand")
+    slope = np.pi * 0.1**2 * 5.0 / 16.0 / 3.0
+    expected = np.array([0.5, 1.0, 1.0, 0.5]) * slope + np.array([0.0, 0.0, one, 0.0])
+    # its flat ends are taken as if they lay along the layers
+    assert solidity_profile(rising, np.ones(2), 4) == pytest.approx(expected, rel=0.01)
