@@ -15,6 +15,8 @@ from pipeline.structure.voxels import Room
 
 _STEPS = 40  # sizes that the distribution is told at
 _SOLVED = 2_000_000  # voxels beyond which conduction is solved on every second one: multigrid takes 2 kB a voxel
+_WIDEST = 40.0
+"""Voxels to the radius of the largest sphere, at most: finer voxels tell nothing, and cost by their sixth power."""
 _FLOW_STEP = 2  # voxels to one of the tubes' flow, whose model is coarser than its voxels
 
 
@@ -43,28 +45,34 @@ def structure_of(
     """
     distance, voxel = room.distance, room.voxel
     progress("spheres between the fibers", 0.1)
-    spheres = spheres_in(distance, periodic)
-    open_share = open_volumes(distance)
-    porosity = float(open_share.mean())
+    porosity = float(open_volumes(distance).mean())
+    held, width = _every(distance, math.ceil(float(distance.max()) / _WIDEST))
+    spheres = spheres_in(held, periodic)
     progress("diffusion through the pores", 0.4)
     step = math.ceil((distance.size / _SOLVED) ** (1 / 3))
-    part = (slice(step // 2, None, step),) * 3
-    coarse = distance[part] / step
+    coarse, _ = _every(distance, step)
     through = conductance_through(np.ones(coarse.shape), coarse, periodic)
     diffusivity = min(through * coarse.shape[2] / (coarse.shape[0] * coarse.shape[1]), 1.0)
     progress("the mean flow pore", 0.7)
-    flow = mean_flow_radius(spheres, _FLOW_STEP * step)
+    again = math.ceil((held.size / _SOLVED) ** (1 / 3))
+    flow = mean_flow_radius(spheres, again if width > 1 else _FLOW_STEP * again)
     return Structure(
         voxel=voxel,
         voxels=(distance.shape[0], distance.shape[1], distance.shape[2]),
         porosity=porosity,
-        pores=_sizes(spheres, open_share, voxel),
-        bubble_point=2.0 * voxel * spheres.passing,
-        mean_flow_pore=2.0 * voxel * flow,
+        pores=_sizes(spheres, open_volumes(held), voxel * width),
+        bubble_point=2.0 * voxel * width * spheres.passing,
+        mean_flow_pore=2.0 * voxel * width * flow,
         specific_surface=surface,
         relative_diffusivity=diffusivity,
         tortuosity=porosity / diffusivity if diffusivity > 0.0 else 0.0,
     )
+
+
+def _every(distance: Floats, step: int) -> tuple[Floats, int]:
+    """Give the distance at every so many voxels, in those wider voxels, and how wide they are; 1 or more."""
+    step = max(step, 1)
+    return distance[(slice(step // 2, None, step),) * 3] / step, step
 
 
 def _sizes(spheres: Spheres, open_share: Floats, voxel: float) -> PoreSizes:

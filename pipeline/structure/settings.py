@@ -15,7 +15,7 @@ class StructureSettings(BaseModel):
     voxels_per_diameter: int = Field(
         default=6,
         ge=2,
-        le=64,
+        le=32,
         description="Voxels to a mean fiber diameter: pores are known to a voxel, the tortuosity at a solidity of "
         "10 % to .5 % at 6 and .1 % at 12.",
     )

@@ -121,6 +121,19 @@ def test_tubes_side_by_side_are_measured_as_what_they_are() -> None:
     assert found.mean_flow_pore == found.bubble_point
 
 
+def test_finer_voxels_than_a_large_pore_needs_cost_no_more_and_tell_the_same() -> None:
+    from pipeline.structure import measure
+
+    wide, fine = tubes(45.3, width=101), tubes(45.3 / 2, width=51)
+    assert wide.distance.max() > measure._WIDEST > fine.distance.max()
+    one = structure_of(Room(np.repeat(wide.distance, 2, axis=2), UM), periodic=False)
+    # on every second voxel a sphere's middle lies within a wider voxel's half diagonal of the axis
+    assert one.bubble_point == pytest.approx(90.6 * UM, abs=3 * UM)
+    assert one.pores.largest == one.bubble_point
+    assert one.mean_flow_pore == one.bubble_point
+    assert one.tortuosity == pytest.approx(1.0, rel=1e-5)
+
+
 def test_half_of_the_flow_through_many_tubes_is_found_by_poiseuille() -> None:
     radii = (12.1, 11.0, 9.9, 8.8)
     found = structure_of(tubes(*radii), periodic=False)
@@ -208,7 +221,7 @@ def test_a_medium_too_large_for_its_voxels_is_told_what_would_do() -> None:
     from pipeline.errors import StageError
 
     with pytest.raises(StageError, match=r"voxels_per_diameter to \d"):
-        room_in(square(0.1, rows=20, depth=40.0), 64)
+        room_in(square(0.1, rows=20, depth=80.0), 64)
 
 
 def test_too_few_voxels_to_a_fiber_are_refused() -> None:
