@@ -37,7 +37,11 @@ def _registry() -> "pint.UnitRegistry[float]":
     import pint
 
     # "degC" is an offset unit: let pint turn it into kelvin instead of refusing it.
-    return pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
+    registry: pint.UnitRegistry[float] = pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
+    # as data sheets write masses per area
+    registry.define("m2 = meter ** 2")
+    registry.define("gsm = gram / meter ** 2")
+    return registry
 
 
 def parse(text: str, unit: str) -> float:
