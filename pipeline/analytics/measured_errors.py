@@ -106,7 +106,7 @@ def write_measured(found: Measured) -> None:
 def mesh_error(
     mesher: str, solver: str, edge: float, growth: float = 1.0, known: Sequence[EdgeError] | None = None
 ) -> EdgeError | None:
-    """Interpolate what a mesh leaves; None outside the edges that were measured, or for another growth.
+    """Interpolate what a mesh leaves; None outside the edges that several mats were measured at, or for another growth.
 
     Parameters
     ----------
@@ -133,7 +133,12 @@ def mesh_error(
     """
     key = mesher, solver, growth
     rows = sorted(
-        (each for each in known or measured().edges if (each.mesher, each.solver, each.growth) == key),
+        (
+            each
+            for each in known or measured().edges
+            # one mat has no range: what its mesh left is no interval for another
+            if (each.mesher, each.solver, each.growth) == key and each.mats > 1
+        ),
         key=lambda each: each.edge,
     )
     for low, high in pairwise(rows):

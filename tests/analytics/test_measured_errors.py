@@ -74,6 +74,13 @@ def test_seeds_average_with_the_root_of_the_plan() -> None:
     assert seed_spread(11.0 * known.area) is None
 
 
+def test_an_edge_that_one_mat_was_measured_at_has_no_interval() -> None:
+    alone = EdgeError("tetwild", "stokes", 1.0, 1.0, 1, 0.03, 0.03, 0.03, 100.0, 0.2)
+    several = replace(alone, edge=0.5, mats=5, low=0.02)
+    assert mesh_error("tetwild", "stokes", 0.75, known=[alone, several]) is None
+    assert mesh_error("tetwild", "stokes", 0.75, known=[replace(alone, mats=2), several]) is not None
+
+
 def test_the_shipped_figures_hold_the_default_mesh_of_both_solvers_and_are_plausible() -> None:
     for solver in ("stokes", "openfoam"):
         found = mesh_error("tetwild", solver, 0.6)
