@@ -95,8 +95,9 @@ def _solved(s: Solution) -> Headline:
         of = "One mesh tells no interval; fibertwin converge solves on three and does."
         return Headline(what, s.pressure_drop, None, None, of, tuple(notes))
     mean, least, most = s.mesh_error
-    # the number less its error, for the largest and the least error that meshes like this had
-    low, high = sorted(s.pressure_drop / (1.0 + each) for each in (least, most))
+    # the number less its error, for the largest and the least error that meshes like this had; and the number itself,
+    # since few mats tell
+    low, *_, high = sorted((s.pressure_drop, s.pressure_drop / (1.0 + least), s.pressure_drop / (1.0 + most)))
     of = f"What such a mesh leaves: it was {mean:+.1%} off on other mats ({least:+.1%} to {most:+.1%})."
     return Headline(what, s.pressure_drop, low, high, of, tuple(notes))
 
