@@ -7,6 +7,7 @@ them again, which takes half a minute and OpenGL.
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import argparse
+import json
 import shutil
 import subprocess
 import sys
@@ -35,6 +36,8 @@ def build(site: Path, draw: bool) -> int:
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder) / "docs"
         shutil.copytree(ROOT / "docs", source, ignore=shutil.ignore_patterns("__pycache__"))
+        for notebook in source.glob("notebooks/*.ipynb"):
+            show_figures(notebook)
         if draw:
             draw_gallery(source / "gallery")
         command = [sys.executable, "-m", "sphinx", "--fail-on-warning", "--quiet", str(source), str(site)]
@@ -42,6 +45,18 @@ def build(site: Path, draw: bool) -> int:
     # what a later build could reuse is made anew each time: a page never shows what the code no longer says
     shutil.rmtree(site / ".doctrees", ignore_errors=True)
     return code
+
+
+def show_figures(notebook: Path) -> None:
+    """Put a cell that the page does not show before the others: a kernel draws figures if it is told to."""
+    content = json.loads(notebook.read_text(encoding="utf-8"))
+    source = [
+        "from IPython.core.pylabtools import select_figure_formats\n",
+        "select_figure_formats(get_ipython(), {'svg'})",
+    ]
+    hidden = {"cell_type": "code", "metadata": {"tags": ["remove-cell"]}, "source": source}
+    content["cells"].insert(0, hidden | {"outputs": [], "execution_count": None})
+    notebook.write_text(json.dumps(content), encoding="utf-8")
 
 
 def draw_gallery(folder: Path) -> None:
