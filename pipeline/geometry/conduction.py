@@ -4,6 +4,7 @@
 
 import numpy as np
 
+from pipeline.geometry.parts import parts
 from pipeline.geometry.triangles import Floats
 
 _TOLERANCE = 1e-6
@@ -78,8 +79,7 @@ def conductance_through(conductivity: Floats, room: Floats, periodic: bool) -> f
         Times a voxel's edge; 0 where nothing leads through.
     """
     import pyamg
-    from scipy.sparse import coo_array, csr_matrix
-    from scipy.sparse.csgraph import connected_components
+    from scipy.sparse import csr_matrix
 
     nz = room.shape[2]
     number = np.arange(room.size).reshape(room.shape)
@@ -95,31 +95,30 @@ def conductance_through(conductivity: Floats, room: Floats, periodic: bool) -> f
         one.append(here[kept])
         two.append(there[kept])
         through.append(share[kept])
-    a, b, value = np.concatenate(one), np.concatenate(two), np.concatenate(through)
-    shape = (room.size, room.size)
-    parts = connected_components(coo_array((value, (a, b)), shape=shape), directed=False)[1].reshape(room.shape)
+    first, second, value = np.concatenate(one), np.concatenate(two), np.concatenate(through)
+    part = parts(first, second, room.size)[1].reshape(room.shape)
     open_end = _open(room, _width(room, [0, 1]))
     ends = [2.0 * conductivity[:, :, k] * open_end[:, :, k] for k in (0, nz - 1)]
-    leads = np.intersect1d(parts[:, :, 0][ends[0] > 0], parts[:, :, -1][ends[1] > 0])
-    inside = np.flatnonzero(np.isin(parts, leads))
+    leads = np.intersect1d(part[:, :, 0][ends[0] > 0], part[:, :, -1][ends[1] > 0])
+    inside = np.flatnonzero(np.isin(part, leads))
     if len(leads) == 0:
         return 0.0
     place = np.full(room.size, -1)
     place[inside] = np.arange(len(inside))
     # both ends of a face belong to one part
-    kept = place[a] >= 0
-    a, b, value = place[a[kept]], place[b[kept]], value[kept]
+    kept = place[first] >= 0
+    first, second, value = place[first[kept]], place[second[kept]], value[kept]
     end = np.zeros(room.shape)
     end[:, :, 0] += ends[0]
     source = end.copy().ravel()[inside]
     end[:, :, -1] += ends[1]
     count = len(inside)
-    diagonal = np.bincount(a, value, count) + np.bincount(b, value, count) + end.ravel()[inside]
+    diagonal = np.bincount(first, value, count) + np.bincount(second, value, count) + end.ravel()[inside]
     everyone = np.arange(count)
     matrix = csr_matrix(
         (
             np.concatenate([-value, -value, diagonal]),
-            (np.concatenate([a, b, everyone]), np.concatenate([b, a, everyone])),
+            (np.concatenate([first, second, everyone]), np.concatenate([second, first, everyone])),
         ),
         shape=(count, count),
     )

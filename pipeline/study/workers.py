@@ -7,11 +7,11 @@ dask.distributed takes a second to load, so it is loaded when there is something
 
 import contextlib
 import logging
-import os
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from pipeline.errors import CaseError, StageError
+from pipeline.machine import cores
 from pipeline.study.one import carry_out
 from pipeline.study.plan import Task
 from pipeline.study.quantity import Results
@@ -76,7 +76,7 @@ def client_of(workers: int | None, scheduler: str | None) -> "Iterator[Client]":
     # a run that takes its worker down, as one without memory does, would do so again
     with dask.config.set({"distributed.scheduler.allowed-failures": 0}):
         if scheduler is None:
-            count = workers or len(os.sched_getaffinity(0))
+            count = workers or cores()
             with (
                 LocalCluster(
                     n_workers=count,

@@ -23,6 +23,23 @@ Blocks = npt.NDArray[np.float32]
 
 
 @compiled
+def _gather(velocity: Floats, unknown: Indices, own: Floats) -> None:
+    """Put the velocity at the ten nodes of a cell into `own`."""
+    for k in range(10):
+        for a in range(3):
+            own[k, a] = velocity[unknown[k], a]
+
+
+@compiled
+def _interpolate(values: Floats, own: Floats, u: Floats) -> None:
+    """Put the velocity at a point into `u`: the sum of the ten functions' values there times those at the nodes."""
+    u[:] = 0.0
+    for k in range(10):
+        for a in range(3):
+            u[a] += values[k] * own[k, a]
+
+
+@compiled
 def _add_force(
     positions: Floats, cells: Ints, unknown: Indices, velocity: Floats, weights: Floats, values: Floats,
     slopes: Floats, force: Floats,
@@ -32,15 +49,10 @@ def _add_force(
     local, own, u = np.empty((10, 3)), np.empty((10, 3)), np.empty(3)
     for cell in range(len(cells)):
         local[:] = 0.0
-        for k in range(10):
-            for a in range(3):
-                own[k, a] = velocity[unknown[cell, k], a]
+        _gather(velocity, unknown[cell], own)
         for q in range(len(weights)):
             weight = _slopes_at(positions, cells[cell], slopes[q], jacobian, inverse, slope) * weights[q]
-            u[:] = 0.0
-            for k in range(10):
-                for a in range(3):
-                    u[a] += values[q, k] * own[k, a]
+            _interpolate(values[q], own, u)
             for k in range(10):
                 along = weight * (u[0] * slope[k, 0] + u[1] * slope[k, 1] + u[2] * slope[k, 2])
                 for a in range(3):
@@ -64,15 +76,10 @@ def _add_change(
     local, local_bent = np.empty((10, 10)), np.empty((10, 10, 3, 3))
     for cell in range(len(cells)):
         local[:], local_bent[:] = 0.0, 0.0
-        for k in range(10):
-            for a in range(3):
-                own[k, a] = velocity[unknown[cell, k], a]
+        _gather(velocity, unknown[cell], own)
         for q in range(len(weights)):
             weight = _slopes_at(positions, cells[cell], slopes[q], jacobian, inverse, slope) * weights[q]
-            u[:] = 0.0
-            for k in range(10):
-                for a in range(3):
-                    u[a] += values[q, k] * own[k, a]
+            _interpolate(values[q], own, u)
             for k in range(10):
                 along = weight * (u[0] * slope[k, 0] + u[1] * slope[k, 1] + u[2] * slope[k, 2])
                 for m in range(10):

@@ -7,13 +7,15 @@ import numpy as np
 from pipeline.errors import StageError
 from pipeline.nouns.arrays import Floats
 from pipeline.solve.stokes.krylov import gmres
-from pipeline.solve.stokes.system import DuctFlow, System, Tell
+from pipeline.solve.stokes.system import DuctFlow, IterationProgress, System
 
 _STALLED = 0.5  # a run whose residual fell by less than this over `_PATIENCE` looks has stalled
 _PATIENCE = 15
 
 
-def creep(system: System, tolerance: float, most: int, tell: Tell, start: DuctFlow | None = None) -> DuctFlow:
+def creep(
+    system: System, tolerance: float, most: int, progress: IterationProgress, start: DuctFlow | None = None
+) -> DuctFlow:
     """Solve for the creeping flow through a duct.
 
     Parameters
@@ -24,7 +26,8 @@ def creep(system: System, tolerance: float, most: int, tell: Tell, start: DuctFl
         Relative error of the pressure drop at which the iterations end, once the forces balance too.
     most : int
         Iterations after which it is given up.
-    tell : callable
+    progress : callable
+        Takes the iterations so far, the pressure drop and its relative change.
     start : DuctFlow, optional
         A flow through the same duct to start from.
 
@@ -52,11 +55,11 @@ def creep(system: System, tolerance: float, most: int, tell: Tell, start: DuctFl
         residuals.append(look.size)
         change = max(abs(look.sharper - before), abs(look.drop - look.sharper))
         state["error"] = change / abs(look.sharper) if look.sharper else np.inf
-        tell(iterations, look.sharper, state["error"])
+        progress(iterations, look.sharper, state["error"])
         if len(residuals) > _PATIENCE and residuals[-1] > _STALLED * residuals[-1 - _PATIENCE]:
             raise StageError(
                 f"the flow stalls after {iterations} iterations (residual {look.size:.1e}): the mesh has cells "
-                "too flat for it; raise tetmesh.passes, or take another tetmesh.engine"
+                "too flat for it; raise tetmesh.tetwild.passes where fTetWild made it, or take another tetmesh.engine"
             )
         return state["error"] < tolerance and look.balanced
 

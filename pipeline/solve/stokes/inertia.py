@@ -8,7 +8,7 @@ from pipeline.errors import StageError
 from pipeline.nouns.arrays import Floats
 from pipeline.solve.stokes.convection import Convection
 from pipeline.solve.stokes.krylov import gmres
-from pipeline.solve.stokes.system import DuctFlow, System, Tell
+from pipeline.solve.stokes.system import DuctFlow, IterationProgress, System
 
 _PICARD = 2  # steps before Newton's: from a creeping flow they do not go astray
 _EXACT = 0.03  # of the residual that a step may leave of its own linear equations
@@ -18,7 +18,9 @@ _SHORTEST = 0.1  # share of a step below which it is taken as it is, whatever be
 _SHORTER = 0.6
 
 
-def with_inertia(system: System, reynolds: float, tolerance: float, most: int, tell: Tell, start: DuctFlow) -> DuctFlow:
+def with_inertia(
+    system: System, reynolds: float, tolerance: float, most: int, progress: IterationProgress, start: DuctFlow
+) -> DuctFlow:
     """Solve for the steady flow of air that has inertia.
 
     Parameters
@@ -31,7 +33,8 @@ def with_inertia(system: System, reynolds: float, tolerance: float, most: int, t
         Relative change of the pressure drop over a step at which it ends, once the forces balance too.
     most : int
         Iterations of all steps together after which it is given up.
-    tell : callable
+    progress : callable
+        Takes the iterations so far, the pressure drop and its relative change.
     start : DuctFlow
         The creeping flow.
 
@@ -66,7 +69,7 @@ def with_inertia(system: System, reynolds: float, tolerance: float, most: int, t
         look = system.look(x)
         error = abs(look.drop - history[-1][1]) / abs(look.drop) if look.drop else np.inf
         history.append((start.iterations + done, look.drop))
-        tell(start.iterations + done, look.drop, error)
+        progress(start.iterations + done, look.drop, error)
         if error < tolerance and look.balanced and look.size < _SETTLED:
             return system.result(x, error, tuple(history), True)
         if done >= most:

@@ -5,11 +5,11 @@
 import math
 
 import numpy as np
-import psutil
 
 from pipeline.analytics.formulas.slip import SLIP_COEFFICIENT, knudsen, regime
 from pipeline.errors import StageError
 from pipeline.geometry.triangles import area_vectors
+from pipeline.machine import free_memory
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.fibers import Pieces
@@ -26,7 +26,7 @@ from pipeline.solve.stokes.duct import Duct
 from pipeline.solve.stokes.inertia import with_inertia
 from pipeline.solve.stokes.passage import refuse_blocked
 from pipeline.solve.stokes.sharing import team
-from pipeline.solve.stokes.system import DuctFlow, System, Tell
+from pipeline.solve.stokes.system import DuctFlow, IterationProgress, System
 
 CREEPING_REYNOLDS = 0.1
 """Fiber Reynolds number below which inertia is left out: it changes no drop that was measured by .5 % there."""
@@ -113,7 +113,7 @@ def solve_stokes(
     return _solution(duct, found, before, mesh, domain, flow, bed, fiber_wall), field, Settling(curves)
 
 
-def _telling(way: str, scale: float, tolerance: float, progress: Progress) -> Tell:
+def _telling(way: str, scale: float, tolerance: float, progress: Progress) -> IterationProgress:
     """Give the function that iterations tell of, with the wall's name and in Pa."""
 
     def told(iterations: int, drop: float, error: float) -> None:
@@ -126,7 +126,7 @@ def _telling(way: str, scale: float, tolerance: float, progress: Progress) -> Te
 
 
 def _solved(
-    system: System, number: float, settings: StokesSettings, told: Tell, start: DuctFlow | None
+    system: System, number: float, settings: StokesSettings, told: IterationProgress, start: DuctFlow | None
 ) -> tuple[DuctFlow, DuctFlow | None]:
     """Solve for the creeping flow, and for the one with inertia where that counts."""
     limits = settings.tolerance, settings.max_iterations, told
@@ -217,7 +217,7 @@ def _duct(mesh: FaceMesh, domain: FluidDomain, unit: float, sides: str) -> Duct:
 
 def _refuse_memory(nodes: int, inertia: bool, settings: StokesSettings) -> None:
     needed = nodes * (_NODE_MEMORY + (_INERTIA_MEMORY if inertia else 0))
-    allowed = settings.memory_limit or _MEMORY_SHARE * psutil.virtual_memory().available
+    allowed = settings.memory_limit or _MEMORY_SHARE * free_memory()
     if needed > allowed:
         raise StageError(
             f"the flow on {nodes:,} nodes takes about {needed / 1e9:.1f} GB, and {allowed / 1e9:.1f} GB may be used: "

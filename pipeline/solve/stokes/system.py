@@ -27,7 +27,7 @@ LOST = 1e-5
 DIVERGENCE_WEIGHT = 10.0
 """Of the divergence beside the forces in what the iterations make small."""
 
-Tell = Callable[[int, float, float], None]
+IterationProgress = Callable[[int, float, float], None]
 """Told the iterations, the pressure drop and its error."""
 
 
