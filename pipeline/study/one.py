@@ -12,6 +12,7 @@ from pipeline.line.manifest import write_manifest
 from pipeline.line.places import MANIFEST
 from pipeline.line.run import Run, run
 from pipeline.nouns.fibers import Mat
+from pipeline.report.stage import REPORT
 from pipeline.study.plan import WORK, Task
 from pipeline.study.quantity import NO_ANSWER, PREDICTED, Results, stage_results
 
@@ -28,7 +29,9 @@ def carry_out(task: Task) -> Results:
     FibertwinError
         If a stage cannot do what the case asks.
     """
-    outcomes = run(task.case, places.own_folder(task.folder, WORK, task.name), task.until)
+    # a page would be thrown away with the stages
+    unread = frozenset() if task.keep or task.until == REPORT.name else frozenset({REPORT.name})
+    outcomes = run(task.case, places.own_folder(task.folder, WORK, task.name), task.until, without=unread)
     # a stage that was skipped has nothing to tell
     finished = [outcome for outcome in outcomes if (outcome.folder / MANIFEST).exists()]
     results: Results = {outcome.stage: stage_results(outcome.folder) for outcome in finished}

@@ -69,7 +69,7 @@ class Task:
 
 
 def plan(study: Study, folder: Path) -> list[Task]:
-    """Make the runs of a study, combination after combination.
+    """Make the runs of a study, seed after seed: one that is stopped has every combination about equally often.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def plan(study: Study, folder: Path) -> list[Task]:
             mistakes |= dict.fromkeys(str(problem).splitlines())
     if mistakes:
         raise CaseError("\n".join(mistakes))
-    return tasks
+    return sorted(tasks, key=lambda task: task.seed)
 
 
 def _runs(study: Study, number: int, point: dict[str, Any], folder: Path) -> list[Task]:

@@ -36,7 +36,7 @@ def at_reynolds(number: float) -> Flow:
 
 def small_duct() -> Duct:
     mesh, domain = rows(0.1, around=4, outward=3, radius=RADIUS)
-    return solver._duct(mesh.face_mesh(), domain, 2 * RADIUS, "symmetry")
+    return solver.duct_of(mesh.face_mesh(), domain, "symmetry")
 
 
 def test_inertia_adds_the_square_of_the_reynolds_number_to_the_drag() -> None:

@@ -99,6 +99,35 @@ def test_the_tables_have_a_line_per_run_and_per_combination(study: Study, here: 
     assert float(means[1]["mat.thickness [um] ci95"]) == pytest.approx(result.points[1].estimates[1].half_width)
 
 
+def test_runs_go_seed_by_seed(study: Study, here: list[Task], tmp_path: Path) -> None:
+    carry_out_study(study, tmp_path / "out")
+    # whatever is finished has every combination about equally often
+    assert [(task.seed, task.point) for task in here] == [(seed, point) for seed in (1, 2, 3) for point in (0, 1)]
+
+
+@pytest.mark.parametrize(("until", "keep", "left_out"), [
+    ("solve", "numbers", {"report"}),
+    ("solve", "everything", set()),
+    ("report", "numbers", set()),
+])  # fmt: skip
+def test_a_page_that_is_thrown_away_is_not_made(
+    study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, until: str, keep: str, left_out: set[str]
+) -> None:
+    class ReachedError(Exception):
+        pass
+
+    asked: list[frozenset[str]] = []
+
+    def spy(case: object, folder: Path, until: str, without: frozenset[str]) -> None:
+        asked.append(without)
+        raise ReachedError
+
+    monkeypatch.setattr("pipeline.study.one.run", spy)
+    with pytest.raises(ReachedError):
+        carry_out(plan(study.model_copy(update={"until": until, "keep": keep}), tmp_path)[0])
+    assert asked == [left_out]
+
+
 def test_finished_runs_are_kept(study: Study, here: list[Task], tmp_path: Path) -> None:
     first = carry_out_study(study, tmp_path / "out")
     assert (first.made, first.reused, len(here)) == (6, 0, 6)
@@ -162,7 +191,7 @@ def test_a_bug_in_a_run_is_recorded_with_its_traceback(
 ) -> None:
     import pipeline.study.one as one
 
-    def broken(*_: object) -> None:
+    def broken(*_: object, **__: object) -> None:
         raise ZeroDivisionError("nothing goes into nothing")
 
     monkeypatch.setattr(one, "run", broken)

@@ -86,7 +86,7 @@ def solve_stokes(
     refuse_regime(flow, unit, solidity, fiber_wall)
     number = reynolds(flow, unit)
     progress("solve: preparing the elements")
-    duct = _duct(mesh, domain, unit, sides)
+    duct = duct_of(mesh, domain, sides)
     _refuse_memory(duct.nodes.count, number > CREEPING_REYNOLDS, settings)
     scale = flow.viscosity * flow.face_velocity / unit
     creeping: dict[str, DuctFlow] = {}
@@ -194,13 +194,25 @@ def _field(duct: Duct, found: DuctFlow, domain: FluidDomain, flow: Flow, slip_le
     )
 
 
-def _duct(mesh: FaceMesh, domain: FluidDomain, unit: float, sides: str) -> Duct:
+def duct_of(mesh: FaceMesh, domain: FluidDomain, sides: str) -> Duct:
+    """Make a mesh ready for a flow, in mean fiber diameters.
+
+    Parameters
+    ----------
+    mesh, domain, sides
+        As in `solve_stokes`.
+
+    Raises
+    ------
+    StageError
+        If the mesh is not of tetrahedra or lets no air through.
+    """
     if not mesh.tetrahedral:
         raise StageError(
             "the engine stokes takes tetrahedra, and this mesh has other cells: take a tetmesh.engine that makes "
             'tetrahedra, or set solve.engine to "openfoam"'
         )
-    lower = np.array(domain.box.lower)
+    unit, lower = 2.0 * float(domain.radius.mean()), np.array(domain.box.lower)
     points, tets, pieces = (mesh.points - lower) / unit, mesh.tets(), domain.pieces
     triangles = {patch.name: mesh.triangles()[mesh.patch(patch.name)] for patch in mesh.patches}
     refuse_blocked(points, tets, triangles, unit, lower)
