@@ -15,7 +15,7 @@ from pathlib import Path
 from pipeline.study.settings import Study, read_study
 from pipeline.study.study import carry_out_study
 from validation.permeability_data import DATA, SLIP_DATA, SLIP_SEEDS, STUDIES, measured, slipping, sweep_slip
-from validation.permeability_page import write_page
+from validation.permeability_page import FEWEST, write_page
 from validation.records import write_records
 
 
@@ -42,9 +42,11 @@ def main(folder: Path) -> None:
                         tell(f"{name}, {point.settings}, seed {run.seed}: {run.error}")
             if swept:
                 sweep_slip(folder / name, tell)
-        write_records(DATA, [each for name in studies for each in measured(folder / name)])
+        mats = [each for name in studies for each in measured(folder / name)]
+        write_records(DATA, mats)
         write_records(SLIP_DATA, list(slipping(folder / STUDIES[0].stem)))
-        write_page()
+        if len(mats) >= FEWEST:
+            write_page()
 
 
 if __name__ == "__main__":

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 PAGE = ROOT / "docs" / "permeability.md"
 PICTURE = ROOT / "docs" / "gallery" / "permeability.svg"
+FEWEST = 3
+"""Mats that a fit and its scatter take."""
 PLACES = (0.03, 0.05, 0.1, 0.15, 0.2)
 """Solidities at which the fit and the models are told."""
 _MODELS = ("davies", "jackson_james", "spielman_goren_layers", "kuwabara", "happel")
