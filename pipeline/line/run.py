@@ -254,6 +254,9 @@ def _step(stage: Stage, case: Case, folder: Path, again: bool, progress: Progres
         progress(f"{stage.name}: reused", 1.0)
         return Outcome(stage.name, place, "reused", float(done["seconds"]), done["counts"])
     obstacle = stage.obstacle(results) if stage.obstacle is not None else None
+    if obstacle is not None and not stage.asked:
+        # others need it: it may have had a result when the run began, or room
+        raise StageError(obstacle)
     if obstacle is not None:
         return Outcome(stage.name, place, "skipped", 0.0, {"reason": obstacle})
     progress(f"{stage.name}: {'; '.join(why)}", 0.0)

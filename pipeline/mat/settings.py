@@ -22,6 +22,7 @@ _ISOTROPIC_CHORD = math.pi / 4
 
 _NARROWEST = 0.01  # gap between the fibers of an array, in diameters
 _SHALLOWEST = 0.05  # depth of an array, in diameters
+_FARTHEST, _SCORES = 6.0, 400  # standard deviations beyond which no diameter counts to a moment, and places within
 
 STOPS = ("coverage", "thickness", "solidity", "count", "pressure_drop", "efficiency")
 """The quantities that may end a mat."""
@@ -51,6 +52,10 @@ class Constant(_Settings):
         """Mean diameter [m]."""
         return self.diameter
 
+    def moment(self, power: int) -> float:
+        """Mean of a power of the diameter [m^power]."""
+        return float(self.diameter**power)
+
 
 class Uniform(_Settings):
     """Diameters spread evenly between two bounds."""
@@ -70,6 +75,12 @@ class Uniform(_Settings):
         """Mean diameter [m]."""
         return 0.5 * (self.min + self.max)
 
+    def moment(self, power: int) -> float:
+        """Mean of a power of the diameter [m^power]."""
+        if power == -1:
+            return math.log(self.max / self.min) / (self.max - self.min)
+        return (self.max ** (power + 1) - self.min ** (power + 1)) / ((power + 1) * (self.max - self.min))
+
 
 class _Truncated(_Settings):
     min: Length | None = Field(default=None, description="Smaller diameters are drawn again.")
@@ -85,7 +96,19 @@ class _Truncated(_Settings):
         low, high = (0.5 * (1 + math.erf(self._score(bound) / math.sqrt(2))) for bound in self.bounds)
         return high - low
 
+    def moment(self, power: int) -> float:
+        """Mean of a power of the diameter, after truncation [m^power]: by midpoints of a standard normal's scores."""
+        low, high = (min(max(self._score(bound), -_FARTHEST), _FARTHEST) for bound in self.bounds)
+        scores = [low + (high - low) * (k + 0.5) / _SCORES for k in range(_SCORES)]
+        weights = [math.exp(-0.5 * score**2) for score in scores]
+        return math.fsum(w * self._at(score) ** power for w, score in zip(weights, scores, strict=True)) / math.fsum(
+            weights
+        )
+
     def _score(self, diameter: float) -> float:
+        raise NotImplementedError
+
+    def _at(self, score: float) -> float:
         raise NotImplementedError
 
     @model_validator(mode="after")
@@ -113,6 +136,9 @@ class Normal(_Truncated):
     def _score(self, diameter: float) -> float:
         return (diameter - self.mean) / self.std
 
+    def _at(self, score: float) -> float:
+        return self.mean + self.std * score
+
 
 class Lognormal(_Truncated):
     """Lognormal diameters, by the median (the geometric mean) and the geometric standard deviation."""
@@ -132,6 +158,9 @@ class Lognormal(_Truncated):
         if diameter == 0:
             return -math.inf
         return math.log(diameter / self.median) / math.log(self.geometric_std)
+
+    def _at(self, score: float) -> float:
+        return self.median * float(self.geometric_std**score)
 
 
 class Part(_Settings):
@@ -157,6 +186,11 @@ class Mixture(_Settings):
     def mean(self) -> float:
         """Mean diameter before truncation [m]."""
         return math.fsum(p.weight * p.diameter.mean for p in self.parts) / math.fsum(p.weight for p in self.parts)
+
+    def moment(self, power: int) -> float:
+        """Mean of a power of the diameter [m^power]."""
+        total = math.fsum(part.weight for part in self.parts)
+        return math.fsum(part.weight * part.diameter.moment(power) for part in self.parts) / total
 
 
 _PLAIN: dict[str, type[BaseModel]] = {

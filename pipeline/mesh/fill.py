@@ -5,8 +5,9 @@
 from dataclasses import replace
 from pathlib import Path
 
+from pipeline.errors import StageError
 from pipeline.mesh.engines.flawed import FlawedMeshError
-from pipeline.mesh.estimate import slenderness
+from pipeline.mesh.estimate import UNSURE, slenderness, too_large
 from pipeline.mesh.settings import TetmeshSettings
 from pipeline.mesh.wall_error import fidelity
 from pipeline.mesh.wall_fibers import wall_fibers
@@ -39,11 +40,14 @@ def fill(
     Raises
     ------
     StageError
-        If the engine fails, or leaves cells without volume, or the fibers' volume or their walls are further off than
-        the settings allow, however often it is run.
+        If the mesh would not fit into memory, or the engine fails, or leaves cells without volume, or the fibers'
+        volume or their walls are further off than the settings allow, however often it is run.
     """
     engine = settings.mesher
-    expected = engine.estimate(slenderness(domain), settings) if engine.estimate is not None else None
+    slender = slenderness(domain)
+    expected = engine.estimate(slender, settings) if engine.estimate is not None else None
+    if expected is not None and (reason := too_large(expected, slender, settings, UNSURE)) is not None:
+        raise StageError(reason)
     if expected is not None and expected.seconds > _LONG:
         progress(
             f"{NOTE}{engine.name} will take about {expected.seconds / 60:.0f} minutes for some {expected.cells:,.2g} "

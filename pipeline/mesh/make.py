@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pipeline.line import store
+from pipeline.mesh.estimate import UNSURE, slenderness_of_case, too_large
 from pipeline.mesh.fill import engine_missing, fill
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.mesh_measures import MeshingCost
@@ -30,6 +31,20 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
 
 
 def obstacle(results: "Results") -> str | None:
+    """Say why the engine cannot run on this machine, or why its mesh will not fit; None where it can and may."""
+    return engine_obstacle(results) or _beyond_memory(results)
+
+
+def _beyond_memory(results: "Results") -> str | None:
+    """Say that the mesh will not fit by far, as far as the case alone tells."""
+    settings = results.case.tetmesh
+    slender = slenderness_of_case(results.case)
+    if slender is None or settings.mesher.estimate is None:
+        return None
+    return too_large(settings.mesher.estimate(slender, settings), slender, settings, UNSURE)
+
+
+def engine_obstacle(results: "Results") -> str | None:
     """Say why the engine cannot run on this machine; None where it can."""
     if results.case.mat.generator == "surface" and results.case.tetmesh.mesher.cuts_by_axes:
         return (

@@ -49,7 +49,9 @@ class SharedSettings(BaseModel):
         "diameters.",
     )
     memory_limit: Memory | None = Field(
-        default=None, description="The mesher is ended above this much memory; if left out, 85 % of the machine's."
+        default=None,
+        description="A mesh that would take more memory is refused, the mesher ended above it; if left out, 85 % of "
+        "what is free.",
     )
 
     @property

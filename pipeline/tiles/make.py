@@ -19,7 +19,7 @@ from pipeline.line import store
 from pipeline.line.places import own_file
 from pipeline.line.run import Run, run
 from pipeline.mesh.estimate import slenderness
-from pipeline.mesh.make import obstacle
+from pipeline.mesh.make import engine_obstacle
 from pipeline.mesh.tiles.plan import TilePlan, plan, refuse_uncut
 from pipeline.nouns.arrays import Bools
 from pipeline.nouns.domain import FluidDomain
@@ -73,7 +73,7 @@ def tiled(
     """
     began = time.monotonic()
     refuse_uncut(case.tetmesh, case.enclosure.sides == "cyclic")
-    if (reason := obstacle(Run(case, folder))) is not None:
+    if (reason := engine_obstacle(Run(case, folder))) is not None:
         raise CaseError(reason)
     run(case, folder, "enclosure", progress=progress, without=frozenset({"report"}))
     domain = Run(case, folder).read(FluidDomain)

@@ -60,6 +60,26 @@ def test_the_mixture_of_figure_3c_has_both_its_kinds() -> None:
     assert sample[~fine].min() >= 2.0e-6
 
 
+@pytest.mark.parametrize(
+    "settings",
+    [
+        1.4e-6,
+        {"distribution": "uniform", "min": 1e-6, "max": 3e-6},
+        {"distribution": "normal", "mean": 1e-6, "std": 0.3e-6, "max": 1.4e-6},
+        {"distribution": "lognormal", "median": 1e-6, "geometric_std": 1.8, "min": 0.4e-6},
+        {"distribution": "mixture", "parts": [{"weight": 3, "diameter": "1 um"}, {"weight": 1, "diameter": "4 um"}]},
+    ],
+)
+def test_moments_are_those_of_the_draws(settings: Any) -> None:
+    known = TypeAdapter(Diameters).validate_python(settings)
+    sample = drawn(settings)
+    for power in (-1, 1, 2, 3):
+        powers = sample**power
+        # four standard errors of the mean of the draws, and rounding where all are alike
+        off = 4.0 * powers.std() / math.sqrt(N) + 1e-9 * powers.mean()
+        assert known.moment(power) == pytest.approx(powers.mean(), abs=off)
+
+
 def test_the_mean_that_a_distribution_states_is_the_mean_of_its_draws() -> None:
     for settings in (
         1.4e-6,

@@ -46,7 +46,7 @@ def graded(counts: tuple[int, int, int], seed: int) -> Octree:
         table(start, end, np.full(3, 0.1)), np.zeros((3, 2), bool), np.arange(3), np.array([1.0, 1.0, 2.0]),
         0.7, 4.0, 1.0,
     )  # fmt: skip
-    return octree(demand, np.array(counts), np.ones(3), 0.0, np.zeros(3, bool), 1e6)
+    return octree(demand, np.array(counts), np.ones(3), 0.0, np.zeros(3, bool), lambda cubes: None)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -271,5 +271,5 @@ def test_random_mats_keep_every_limit(contact: str, seed: int) -> None:
 
 def test_a_lattice_beyond_memory_is_refused_with_what_to_do() -> None:
     domain, _ = across(0.6)
-    with pytest.raises(StageError, match=r"more than .* cubes, and the limit of memory allows 12; raise tetmesh.edge"):
+    with pytest.raises(StageError, match=r"cells and take .* tetmesh.memory_limit allows .* raise tetmesh.edge"):
         fill(domain, TetmeshSettings(engine="lattice", edge=0.6, memory_limit=1e5))

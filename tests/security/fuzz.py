@@ -1,14 +1,15 @@
-"""Draw as many inputs as one likes: ``python -m tests.security.fuzz 20000 [part of a target's name]``."""
+"""Draw as many inputs as one likes: ``python -m tests.security.fuzz 20000 [part of a target's name [seed]]``."""
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import os
+import random
 import resource
 import sys
-import time
 import traceback
 from collections.abc import Callable
 
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
 
 from tests.security.inputs import TARGETS
@@ -19,10 +20,11 @@ MEMORY = 6 * 2**30
 """Address space [byte] that the process gets: a header that lies about its counts must not take the machine's."""
 
 
-def drawing(target: Callable[[st.DataObject], None], count: int) -> tuple[Callable[[], None], list[int]]:
-    """Make the function that draws `count` inputs for a target, and the list whose one number counts them."""
+def drawing(target: Callable[[st.DataObject], None], count: int, start: int) -> tuple[Callable[[], None], list[int]]:
+    """Make the function that draws `count` inputs for a target from a seed, and the list whose number counts them."""
     drawn = [0]
 
+    @seed(start)
     @settings(max_examples=count, deadline=None, database=None, suppress_health_check=list(HealthCheck))
     @given(data=st.data())
     def many(data: st.DataObject) -> None:
@@ -35,20 +37,23 @@ def drawing(target: Callable[[st.DataObject], None], count: int) -> tuple[Callab
 def main() -> int:
     """Draw inputs for every target; exit code 1 if one gave anything but a result or an error of ours."""
     count, part = int(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else ""
+    start = int(sys.argv[3]) if len(sys.argv) > 3 else random.randrange(2**32)
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     failed = 0
     for name, target in {**TARGETS, **PICTURES, **RUN_FOLDERS}.items():
         if part not in name:
             continue
-        many, drawn = drawing(target, count)
-        began = time.perf_counter()
+        many, drawn = drawing(target, count, start)
+        began = sum(os.times()[:4])
         try:
             many()
             outcome = "held"
         except Exception:  # whatever it is, it is what we look for
             failed += 1
             outcome = traceback.format_exc()
-        sys.stdout.write(f"{name}: {drawn[0]} inputs in {time.perf_counter() - began:.0f} s: {outcome}\n")
+        # what readers do in processes of their own counts too
+        spent = sum(os.times()[:4]) - began
+        sys.stdout.write(f"{name}: {drawn[0]} inputs from seed {start}, {spent:.0f} s of processor time: {outcome}\n")
         sys.stdout.flush()
     return 1 if failed else 0
 

@@ -18,6 +18,22 @@ if TYPE_CHECKING:
     from pipeline.progress import Progress
 
 
+@dataclass(frozen=True, slots=True)
+class Slenderness:
+    """What the cells of a mesh go with.
+
+    Parameters
+    ----------
+    total : float [-]
+        Sum over all fibers of length over diameter.
+    alike : bool
+        Whether all fibers have one diameter.
+    """
+
+    total: float
+    alike: bool = True
+
+
 class EngineSettings(BaseModel):
     """Keys that one engine alone reads; an engine without any takes this as it is."""
 
@@ -48,12 +64,14 @@ class Engine:
     missing : callable
         Says why it cannot run on this machine and what to do, or None where it can.
     estimate : callable, optional
-        Gives cells, memory and processor time for fibers of a slenderness (the sum of length over diameter) and the
+        Gives cells, memory and processor time for the fibers' slenderness and the
         settings, within some ten percents.
     quicker : str
         What makes it quicker, as the end of a message.
     cuts_by_axes : bool
         Whether it needs the fibers' axes: a medium that is there as a surface has none.
+    in_tiles : bool
+        Whether `fibertwin tiles` meshes a case with it a part at a time.
     tries : int
         How often it is run until the mesh is sound: an engine that differs each time may do better.
     """
@@ -65,7 +83,8 @@ class Engine:
     truer: str
     better: Callable[["TetmeshSettings"], tuple[str, ...]]
     missing: Callable[["TetmeshSettings"], str | None] = lambda settings: None
-    estimate: Callable[[float, "TetmeshSettings"], "Estimate"] | None = None
+    estimate: Callable[[Slenderness, "TetmeshSettings"], "Estimate"] | None = None
     quicker: str = "raise tetmesh.edge"
     tries: int = 1
     cuts_by_axes: bool = False
+    in_tiles: bool = False

@@ -5,16 +5,15 @@
 import time
 
 from pipeline.errors import StageError
+from pipeline.machine import free_memory
 from pipeline.progress import Progress
 
-_MEMORY_SHARE = 0.85  # of the machine's memory, where the case names no limit
+_MEMORY_SHARE = 0.85  # of the memory that is free, where the case names no limit
 
 
 def memory_allowed(limit: float | None) -> float:
-    """Give the limit of a case [byte], or most of the machine's memory where it names none."""
-    import psutil
-
-    return limit or _MEMORY_SHARE * psutil.virtual_memory().total
+    """Give the limit of a case [byte], or most of the machine's free memory where it names none."""
+    return limit or _MEMORY_SHARE * free_memory()
 
 
 def within(seconds: float, who: str, advice: str, progress: Progress) -> Progress:

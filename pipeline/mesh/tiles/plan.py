@@ -135,7 +135,7 @@ def refuse_uncut(settings: TetmeshSettings, cyclic: bool) -> None:
     ------
     CaseError
     """
-    if settings.engine != "lattice":
+    if not settings.mesher.in_tiles:
         raise CaseError(
             f'tiles need tetmesh.engine = "lattice", whose cells are the same whoever makes them; it is '
             f'"{settings.engine}"'

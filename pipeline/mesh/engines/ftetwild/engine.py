@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from pydantic import Field
 
 from pipeline.line.stage import Estimate
-from pipeline.mesh.engines.engine import Engine, EngineSettings
+from pipeline.mesh.engines.engine import Engine, EngineSettings, Slenderness
 from pipeline.mesh.estimate import field_cells
 from pipeline.units import Duration, PositiveRatio
 
@@ -54,13 +54,14 @@ def _mesh(
     return finished(*tetrahedralized(domain, settings, unit, progress), domain, settings, progress)
 
 
-def _estimate(slender: float, settings: "TetmeshSettings") -> Estimate:
+def _estimate(slender: Slenderness, settings: "TetmeshSettings") -> Estimate:
     # measured on the smoke case, the default at edges of 0.6 and 1.0, and on figure10_corner at 1.0 (docs/meshing.md);
     # the surface's triangles, some 46 per diameter of length, cost more than cells, and time grows faster than both
-    field = slender * field_cells(settings)
-    slower = 1.0 + slender / 1500.0
-    seconds = 1.0 + slower * (0.035 * slender + 1.9e-4 * field)
-    return Estimate(76.0 * slender + 0.6 * field, 2.5e8 + 1e5 * slender + 300.0 * field, seconds)
+    total = slender.total
+    field = total * field_cells(settings)
+    slower = 1.0 + total / 1500.0
+    seconds = 1.0 + slower * (0.035 * total + 1.9e-4 * field)
+    return Estimate(76.0 * total + 0.6 * field, 2.5e8 + 1e5 * total + 300.0 * field, seconds)
 
 
 TETWILD = Engine(

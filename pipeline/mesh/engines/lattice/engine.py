@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from pydantic import Field
 
 from pipeline.line.stage import Estimate
-from pipeline.mesh.engines.engine import Engine, EngineSettings
+from pipeline.mesh.engines.engine import Engine, EngineSettings, Slenderness
 from pipeline.mesh.estimate import field_cells
 from pipeline.units import Duration
 
@@ -43,9 +43,14 @@ def _mesh(
     return finished(*lattice_mesh(domain, settings, progress), domain, settings, progress)
 
 
-def _estimate(slender: float, settings: "TetmeshSettings") -> Estimate:
-    # measured on pieces of Fig. 10's mat and on the whole of it: docs/meshing.md
-    cells = 3.6 * slender * field_cells(settings)
+def _estimate(slender: Slenderness, settings: "TetmeshSettings") -> Estimate:
+    # edges double from level to level, so that fibers of any diameter get smaller ones than they ask for
+    each = 3.6 if slender.alike else 10.0
+    return estimate_for(each * slender.total * field_cells(settings))
+
+
+def estimate_for(cells: float) -> Estimate:
+    """Give memory and time for so many cells, measured on Fig. 10's mat and pieces of it: docs/meshing.md."""
     return Estimate(cells, 2.5e8 + 240.0 * cells, 1.0 + 1.1e-5 * cells)
 
 
@@ -55,6 +60,7 @@ LATTICE = Engine(
     settings=LatticeSettings,
     mesh=_mesh,
     cuts_by_axes=True,
+    in_tiles=True,
     truer="lower tetmesh.edge",
     estimate=_estimate,
     better=lambda settings: (f"tetmesh.edge={0.75 * settings.edge:.3g}",),

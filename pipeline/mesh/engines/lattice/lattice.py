@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from pipeline.errors import StageError
 from pipeline.geometry.tets import Cells
 from pipeline.machine import peak_memory
 from pipeline.mesh.distance import fiber_distance
-from pipeline.mesh.engines.limits import memory_allowed
+from pipeline.mesh.engines.lattice.engine import estimate_for
+from pipeline.mesh.estimate import slenderness, too_large
 from pipeline.mesh.freedom import Freedom
 from pipeline.mesh.settings import TetmeshSettings
 from pipeline.mesh.working_mesh import WorkingMesh
@@ -34,7 +36,7 @@ _OFF = 0.02  # of its diameter that improving may move a vertex off a fiber
 _FARTHEST = 2.0  # distances from the surface that a vertex may move, when it has to stay on a plane of the duct
 _LEAST = 1e-3  # volume of a tetrahedron whose vertices have moved, in cubes; there are 12 to a cube
 _SHORTEST = 0.1  # diameters; a shorter fiber gets no smaller cubes
-_BYTES = 8000  # of memory for each cube: ten tetrahedra, of which a million took 0.8 GiB at the peak
+_CELLS = 12.0  # of the mesh for each cube: measured 11.4 to 13.3
 _AIR = 0.02  # cubes between the surface and the center of a tetrahedron that is kept though all its corners lie there
 _THROUGH = 0.1  # cubes that the middle of its edges may lie in a fiber: chords do
 _THICK = 0.01  # volume of such a tetrahedron, in cubes
@@ -197,8 +199,14 @@ def _cubes(
 
     demand, cubes, _ = _demand(domain, settings)
     wrapped = np.array([domain.cyclic, domain.cyclic, False])
-    limit = memory_allowed(settings.memory_limit)
-    return octree(demand, cubes.counts, cubes.edge, _NARROW, wrapped, limit / _BYTES, window), cubes.edge
+    slender, parts = slenderness(domain), window is None and not domain.cyclic
+
+    def refuse(count: int) -> None:
+        expected = estimate_for(_CELLS * count)
+        if (reason := too_large(expected, slender, settings, parts=parts)) is not None:
+            raise StageError(reason)
+
+    return octree(demand, cubes.counts, cubes.edge, _NARROW, wrapped, refuse, window), cubes.edge
 
 
 def _demand(domain: FluidDomain, settings: TetmeshSettings) -> "tuple[Demand, Grid, float]":

@@ -7,11 +7,11 @@ fill the box are the children that are not split themselves.
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from pipeline.errors import StageError
 from pipeline.geometry.compiled import compiled
 from pipeline.geometry.cylinders import away, distance
 from pipeline.geometry.fibers import Bools
@@ -205,7 +205,7 @@ def octree(
     edge_of_cube: Floats,
     share: float,
     wrapped: Bools,
-    most: float,
+    refuse: Callable[[int], None],
     window: tuple[Ints, Ints] | None = None,
 ) -> Octree:
     """Split a box into cubes until each is as small as the fibers near it ask for.
@@ -221,8 +221,8 @@ def octree(
         Cubes are split where the air between walls that face each other is narrower than this many cubes.
     wrapped : (3,) bool array
         Axes along which the box repeats itself; its count is a multiple of the largest cube.
-    most : float
-        Number of cubes beyond which the work is given up.
+    refuse : callable
+        Is told how many cubes there will be at least, as soon as that is known, and may raise an error.
     window : two (3,) int arrays, optional
         Lowest and highest corner, in smallest cubes, of the part of the box that is wanted: far outside of it the cubes
         are too large or missing, and twice the largest cube inside of it they are those of the whole box.
@@ -230,11 +230,6 @@ def octree(
     Returns
     -------
     Octree
-
-    Raises
-    ------
-    StageError
-        If there would be more than `most` cubes.
     """
     top = int(np.floor(np.log2(1.001 * demand.largest / edge_of_cube.max()))) if demand.largest else 0
     top = max(top, 0)
@@ -242,25 +237,25 @@ def octree(
     places = np.zeros((1, 3), np.int64)
     first, near = np.array([0, len(demand.pieces)]), np.arange(len(demand.pieces))
     split: dict[int, Ints] = {}
+    whole = 0
     while level > 0 and len(places):
         chosen, first, near = _split(
             places, edge_of_cube, counts, 1 << level, level <= top, first, near, demand.pieces, demand.flat,
             demand.fiber, demand.edge, demand.growth, demand.largest, demand.narrowest, share,
         )  # fmt: skip
         split[level] = places[chosen]
-        if 8.0 * len(split[level]) > most:
-            raise StageError(
-                f"the fibers ask for more than {8 * len(split[level]):,} cubes, and the limit of memory allows "
-                f"{most:,.0f}; raise tetmesh.edge or tetmesh.memory_limit"
-            )
+        whole += int((~chosen).sum())
         level -= 1
         places, parent = _children(split[level + 1], counts, level)
         if window is not None:
             meets = ((places << level < window[1]) & ((places + 1) << level > window[0])).all(axis=1)
             places, parent = places[meets], parent[meets]
+        refuse(whole + len(places))
         rows = np.flatnonzero(chosen)[parent]
         first, near = _gathered(first, near, rows)
-    return Octree(counts, *_leaves(_balanced(split, counts, wrapped), counts))
+    low, level_of = _leaves(_balanced(split, counts, wrapped), counts)
+    refuse(len(level_of))
+    return Octree(counts, low, level_of)
 
 
 @compiled

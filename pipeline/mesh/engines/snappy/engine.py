@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from pydantic import Field
 
 from pipeline.line.stage import Estimate
-from pipeline.mesh.engines.engine import Engine, EngineSettings
+from pipeline.mesh.engines.engine import Engine, EngineSettings, Slenderness
 from pipeline.mesh.estimate import field_cells
 from pipeline.units import Duration
 
@@ -44,9 +44,9 @@ def _missing(settings: "TetmeshSettings") -> str | None:
     return missing(settings.own(SnappySettings).cores)
 
 
-def _estimate(slender: float, settings: "TetmeshSettings") -> Estimate:
+def _estimate(slender: Slenderness, settings: "TetmeshSettings") -> Estimate:
     # measured on the default case: docs/meshing.md
-    cells = 1.4 * slender * field_cells(settings)
+    cells = 1.4 * slender.total * field_cells(settings)
     return Estimate(cells, 1e8 + 4500.0 * cells, 3.0 + 3e-4 * cells)
 
 
