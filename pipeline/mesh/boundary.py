@@ -69,6 +69,37 @@ def assign(points: Floats, faces: Ints, box: Box, tolerance: float) -> Ints:
     return patch
 
 
+def blunted_edges(points: Floats, faces: Ints, box: Box, tolerance: float) -> Ints:
+    """Find the faces that cut off an edge of the duct, and the plane that each belongs to.
+
+    A mesher that keeps a surface within an envelope may join points beside an edge of the duct by a face across it,
+    which faces neither plane's way and would count as a fiber's wall. All faces across one edge go to the same plane,
+    so that what joins them ends on the edge.
+
+    Parameters
+    ----------
+    points : (n, 3) array [m]
+    faces : (b, 3) int array
+        Boundary triangles.
+    box : Box [m]
+        The duct.
+    tolerance : float [m]
+        How far a vertex may lie from both planes.
+
+    Returns
+    -------
+    (b,) int array
+        Index into `pipeline.nouns.patches.PATCHES`, -1 where a face cuts off no edge.
+    """
+    found = np.full(len(faces), -1, dtype=np.int64)
+    near_planes = np.zeros(len(faces), dtype=np.int64)
+    for plane in planes(box):
+        near = (np.abs(points[:, plane.axis] - plane.value) <= tolerance)[faces].all(axis=1)
+        found[near & (found < 0)] = plane.patch
+        near_planes += near
+    return np.where(near_planes > 1, found, -1)
+
+
 def flattened(points: Floats, faces: Ints, patch: Ints, box: Box) -> Floats:
     """Give the points with every vertex of a plane's face exactly on that plane, and none outside the duct.
 

@@ -7,7 +7,7 @@ import pytest
 from pipeline.geometry.adjacency import largest_part_of, neighbors
 from pipeline.geometry.box import Box
 from pipeline.geometry.tets import boundary, volumes
-from pipeline.mesh.improve.crevices import at_walls, in_crevice
+from pipeline.mesh.improve.crevices import at_walls, beside_fibers, in_crevice
 from pipeline.mesh.improve.smooth import smoothed
 from pipeline.mesh.improve.split import split_corners, split_longest
 from pipeline.mesh.improve.walls import on_fibers
@@ -152,6 +152,16 @@ def test_only_cells_with_a_vertex_on_a_fiber_may_be_given_to_it() -> None:
     np.testing.assert_array_equal(near, on_cube[hollow].any(axis=1))
     assert near.any()
     assert not near.all()
+
+
+def test_only_cells_beside_a_fiber_with_every_vertex_may_be_given_to_it() -> None:
+    # layers of cells .2 high under a fiber of diameter 1: all vertices of the uppermost lie within a quarter of it
+    mesh = under_a_fiber(1.0, above=0.1)
+    five = working(*kuhn_box(5), mesh.freedom)
+    found = beside_fibers(five, np.arange(five.cells))
+    np.testing.assert_array_equal(found, (five.points[five.tets][:, :, 2] > 0.79).all(axis=1))
+    # where nobody knows the fibers' axes every cell may be one
+    assert beside_fibers(working(*kuhn_box(2), freedom(place=300.0)), np.arange(48)).all()
 
 
 def test_the_largest_part_is_kept() -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from pipeline.geometry.box import Box
 from pipeline.geometry.tets import boundary
-from pipeline.mesh.boundary import assign
+from pipeline.mesh.boundary import assign, blunted_edges, flattened, planes
 from pipeline.mesh.engines.flawed import FlawedMeshError
 from pipeline.mesh.engines.ftetwild.ftetwild import _plane_errors, lost_part
 from pipeline.mesh.improve.finish import _check_patches
@@ -84,3 +84,27 @@ def test_a_way_that_the_mesh_closes_says_what_keeps_it_open() -> None:
     said = r"reaches inlet, though .* lower tetmesh\.tetwild\.envelope .* raise surface\.sides"
     with pytest.raises(FlawedMeshError, match=said):
         _check_patches(working(points, closed), whole, TetmeshSettings())
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_faces_across_an_edge_of_the_duct_belong_to_one_of_its_planes(seed: int) -> None:
+    # triangles in a tube about a random edge of the duct: all go to one plane, and what lies on the other ends on the
+    # edge; triangles elsewhere, however near to one plane, cut off no edge
+    rng = np.random.default_rng(seed)
+    box, within = Box((-1.0, 0.0, 2.0), (1.0, 3.0, 7.0)), 0.05
+    pairs = [(one, other) for one in planes(box) for other in planes(box) if one.axis != other.axis]
+    first, second = pairs[rng.integers(len(pairs))]
+    along = 3 - first.axis - second.axis
+    points = rng.uniform(np.array(box.lower) + 0.3, np.array(box.upper) - 0.3, (60, 3))
+    for plane in (first, second):
+        points[:30, plane.axis] = plane.value - plane.sign * rng.uniform(0.0, within, 30)
+    points[30:, first.axis] = first.value - first.sign * rng.uniform(0.0, within, 30)
+    faces = np.arange(60).reshape(20, 3)
+    found = blunted_edges(points, faces, box, within)
+    assert set(found[:10].tolist()) <= {first.patch, second.patch}
+    assert len(set(found[:10].tolist())) == 1
+    assert (found[10:] == -1).all()
+    flat = flattened(points, faces[:10], found[:10], box)[:30]
+    kept = next(plane for plane in (first, second) if plane.patch == found[0])
+    assert (flat[:, kept.axis] == kept.value).all()
+    np.testing.assert_array_equal(flat[:, along], points[:30, along])

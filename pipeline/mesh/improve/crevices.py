@@ -10,7 +10,9 @@ The air in them stands still: they are given to the fibers, a few millionths of 
 import numpy as np
 
 from pipeline.mesh.working_mesh import WorkingMesh, on_boundary
-from pipeline.nouns.arrays import Bools
+from pipeline.nouns.arrays import Bools, Ints
+
+_BESIDE = 0.25  # diameters: air that thick between a fiber and a side it touches is half a diameter from the contact
 
 
 def in_crevice(mesh: WorkingMesh, faulty: Bools, stuck: bool) -> Bools:
@@ -35,6 +37,19 @@ def in_crevice(mesh: WorkingMesh, faulty: Bools, stuck: bool) -> Bools:
         outside[mesh.boundary()[0]] = True
         tip &= outside[mesh.tets].all(axis=1)
     return tip
+
+
+def beside_fibers(mesh: WorkingMesh, cells: Ints) -> Bools:
+    """Tell which cells lie beside fibers with all their vertices, as the tip of a wedge does: (cells,) bool array.
+
+    Where nobody knows the axes of the fibers every cell may.
+    """
+    corners = mesh.tets[cells]
+    distance, piece = mesh.freedom.distance.with_piece(mesh.points[corners.ravel()])
+    diameter = mesh.freedom.diameter[mesh.freedom.distance.field[2][np.maximum(piece, 0)]]
+    known = (piece >= 0).reshape(corners.shape)
+    beside = (distance <= _BESIDE * diameter).reshape(corners.shape)
+    return np.asarray((known & beside).all(axis=1) | ~known.any(axis=1))
 
 
 def at_walls(mesh: WorkingMesh) -> Bools:

@@ -7,7 +7,7 @@ Some cells in ten thousand are faulty: all work but looking for them is done on 
 
 import numpy as np
 
-from pipeline.mesh.improve.crevices import at_walls, in_crevice
+from pipeline.mesh.improve.crevices import at_walls, beside_fibers, in_crevice
 from pipeline.mesh.improve.split import split_corners, split_longest
 from pipeline.mesh.working_mesh import INTERFACE, LATER, WorkingMesh
 from pipeline.nouns.arrays import Bools
@@ -91,6 +91,7 @@ def _repaired_part(mesh: WorkingMesh) -> tuple[WorkingMesh, float]:
         stuck = filling >= _PATIENCE
         # away from the fibers nothing is a crevice: a filled cell at the inlet of a coarse mesh doubled a pressure drop
         crevice = in_crevice(mesh, faulty, stuck) & at_walls(mesh) & ~(mesh.across < INTERFACE).any(axis=1)
+        crevice[crevice] = beside_fibers(mesh, np.flatnonzero(crevice))
         if mesh.freedom.cyclic:
             # what were filled or split on one side would have no partner opposite
             at_side = _on_sides(mesh)[mesh.tets].sum(axis=1)

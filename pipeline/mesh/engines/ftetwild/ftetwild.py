@@ -10,7 +10,7 @@ from pipeline.geometry.box import Box
 from pipeline.geometry.faces import compacted
 from pipeline.geometry.tets import boundary
 from pipeline.geometry.triangles import area_vectors
-from pipeline.mesh.boundary import assign, flattened, planes
+from pipeline.mesh.boundary import assign, blunted_edges, flattened, planes
 from pipeline.mesh.engines.flawed import FlawedMeshError
 from pipeline.mesh.engines.ftetwild.engine import TetwildSettings
 from pipeline.mesh.engines.ftetwild.running import Meshed, run_mesher
@@ -64,7 +64,9 @@ def tetrahedralized(
     faces, _ = boundary(tets)
     # two envelopes: the mesher bounds the distance to the surface, not the distance along the plane's normal
     patch = assign(points, faces, domain.box, tolerance=2.0 * envelope)
-    points = flattened(points, faces, patch, domain.box)
+    blunt = blunted_edges(points, faces, domain.box, 2.0 * envelope)
+    blunt[_off_fibers(points, faces, domain) <= _BESIDE * domain.mean_diameter] = -1
+    points = flattened(points, faces, np.where(blunt >= 0, blunt, patch), domain.box)
     tets = _without_flat_sides(points, tets, domain.box)
     lost = lost_part(points, tets, domain)
     if lost is not None:
@@ -105,9 +107,14 @@ def _area_off_fibers(points: Floats, tets: Ints, domain: FluidDomain) -> float:
     """Area of walls [m2] farther from the fibers' surface than sharp air beside them reaches."""
     faces, _ = boundary(tets)
     walls = faces[assign(points, faces, domain.box, tolerance=0.0) == domain.patches.index(FIBERS)]
+    return _area(points, walls[_off_fibers(points, walls, domain) > _BESIDE * domain.mean_diameter])
+
+
+def _off_fibers(points: Floats, faces: Ints, domain: FluidDomain) -> Floats:
+    """Distance [m] of each face's middle from the points of the fibers' surface."""
     on_fibers = domain.points[np.unique(domain.triangles[domain.patch == domain.patches.index(FIBERS)])]
-    distance, _ = cKDTree(on_fibers).query(points[walls].mean(axis=1))
-    return _area(points, walls[distance > _BESIDE * domain.mean_diameter])
+    distance, _ = cKDTree(on_fibers).query(points[faces].mean(axis=1))
+    return np.asarray(distance)
 
 
 def _plane_errors(points: Floats, tets: Ints, domain: FluidDomain) -> dict[str, float]:
