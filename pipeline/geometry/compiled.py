@@ -5,10 +5,13 @@
 from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 
+import numpy as np
+import numpy.typing as npt
 from numba import njit
 
 _Arguments = ParamSpec("_Arguments")
 _Result = TypeVar("_Result")
+_Scalar = TypeVar("_Scalar", bound=np.generic)
 
 
 def compiled(function: Callable[_Arguments, _Result]) -> Callable[_Arguments, _Result]:
@@ -24,3 +27,10 @@ def compiled_for_threads(function: Callable[_Arguments, _Result]) -> Callable[_A
     """Compile like `compiled`, and let other threads run meanwhile: the function touches no Python object."""
     machine_code: Callable[_Arguments, _Result] = njit(cache=True, nogil=True)(function)
     return machine_code
+
+
+def read_only(array: npt.NDArray[_Scalar]) -> npt.NDArray[_Scalar]:
+    """Give a view that cannot be written, in one block: a loop is compiled anew for arrays of every other make."""
+    view = np.ascontiguousarray(array).view()
+    view.flags.writeable = False
+    return view

@@ -30,13 +30,11 @@ def parts(first: Ints, second: Ints, count: int) -> tuple[int, Ints]:
     >>> number, part.tolist()
     (3, [0, 1, 0, 1, 2])
     """
-    # scipy takes a fifth of a second to load, which no command that reads this module should wait for
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
+    # numba takes half a second to load, which no command that reads this module should wait for
+    from pipeline.geometry.compiled import read_only
+    from pipeline.geometry.joined import joined
 
-    links = coo_array((np.ones(len(first), np.int8), (first, second)), shape=(count, count))
-    number, part = connected_components(links, directed=False)
-    return int(number), part.astype(np.int64)
+    return joined(read_only(np.asarray(first, np.int64)), read_only(np.asarray(second, np.int64)), count)
 
 
 def largest_part(first: Ints, second: Ints, among: Mask) -> Mask:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pipeline.geometry.tets import Cells
+from pipeline.geometry.threads import in_parts
 from pipeline.geometry.triangles import Floats, Ints
 
 
@@ -61,22 +63,14 @@ def polygons(points: Floats, corners: Ints, offsets: Ints) -> tuple[Floats, Floa
     >>> areas.tolist(), centers.tolist()
     ([[0.0, 0.0, 1.0]], [[0.5, 0.5, 0.0]])
     """
-    areas, centers = np.empty((len(offsets) - 1, 3)), np.empty((len(offsets) - 1, 3))
-    for faces, places in by_size(offsets):
-        vertices = points[corners[places]]
-        middle = vertices.mean(axis=1)
-        if places.shape[1] == 3:
-            edges = vertices[:, 1:] - vertices[:, :1]
-            areas[faces], centers[faces] = 0.5 * np.cross(edges[:, 0], edges[:, 1]), middle
-            continue
-        following = np.roll(vertices, -1, axis=1)
-        normals = np.cross(following - vertices, middle[:, None] - vertices)
-        weights = np.linalg.norm(normals, axis=2)
-        total = weights.sum(axis=1)
-        moment = np.einsum("fk,fkx->fx", weights, vertices + following + middle[:, None])
-        areas[faces] = 0.5 * normals.sum(axis=1)
-        flat = total == 0
-        centers[faces] = np.where(flat[:, None], middle, moment / (3.0 * np.where(flat, 1.0, total))[:, None])
+    # numba takes half a second to load
+    from pipeline.geometry.compiled import read_only
+    from pipeline.geometry.pyramids import measure_polygons
+
+    count = len(offsets) - 1
+    areas, centers = np.empty((count, 3)), np.empty((count, 3))
+    vertices, numbers, places = read_only(points), read_only(corners), read_only(offsets)
+    in_parts(lambda begin, end: measure_polygons(vertices, numbers, places, areas, centers, begin, end), count)
     return areas, centers
 
 
@@ -119,24 +113,6 @@ def fanned(points: Floats, corners: Ints, offsets: Ints) -> tuple[Floats, Ints]:
     return np.concatenate(vertices), np.concatenate(triangles)
 
 
-def sum_per_cell(cell: Ints, values: Floats, cells: int) -> Floats:
-    """Sum rows of `values` by the cell that each belongs to.
-
-    Parameters
-    ----------
-    cell : (k,) int array
-    values : (k,) or (k, components) array
-    cells : int
-
-    Returns
-    -------
-    (cells,) or (cells, components) array
-    """
-    if values.ndim == 1:
-        return np.bincount(cell, values, cells).astype(np.float64)
-    return np.stack([sum_per_cell(cell, column, cells) for column in values.T], axis=1)
-
-
 @dataclass(frozen=True, eq=False, slots=True)
 class Polyhedra:
     """Geometry of a mesh of polyhedra.
@@ -147,12 +123,18 @@ class Polyhedra:
         Of the faces; an area vector points out of the owner.
     cell_centers : (cells, 3) array [m]
     volumes : (cells,) array [m3]
+    first : (cells + 1,) int array
+    faces : (faces + internal,) int array
+        Cell c has ``faces[first[c]:first[c + 1]]``: f where it owns face f, and then ``-1 - f`` where it is the
+        neighbour.
     """
 
     areas: Floats
     centers: Floats
     cell_centers: Floats
     volumes: Floats
+    first: Ints
+    faces: Cells
 
 
 def polyhedra(points: Floats, corners: Ints, offsets: Ints, owner: Ints, neighbour: Ints, cells: int) -> Polyhedra:
@@ -175,21 +157,14 @@ def polyhedra(points: Floats, corners: Ints, offsets: Ints, owner: Ints, neighbo
     centers; the cell's center is the mean of the pyramids' centers, weighted by their volumes. Points are taken
     from the middle of the mesh, where far from the origin the terms would cancel in rounding.
     """
+    from pipeline.geometry.compiled import read_only
+    from pipeline.geometry.pyramids import faces_of_cells, measure_cells
+
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     areas, centers = polygons(points - middle, corners, offsets)
-    internal = len(neighbour)
-    inner = slice(0, internal)
-    faces_of = np.bincount(owner, minlength=cells) + np.bincount(neighbour, minlength=cells)
-    estimate = sum_per_cell(owner, centers, cells) + sum_per_cell(neighbour, centers[inner], cells)
-    estimate /= np.maximum(faces_of, 1)[:, None]
-
-    volumes = np.zeros(cells)
-    moments = np.zeros((cells, 3))
-    for cell, sign, which in ((owner, 1.0, slice(None)), (neighbour, -1.0, inner)):
-        pyramids = sign * np.einsum("fx,fx->f", areas[which], centers[which] - estimate[cell])
-        middles = 0.75 * centers[which] + 0.25 * estimate[cell]
-        volumes += sum_per_cell(cell, pyramids, cells)
-        moments += sum_per_cell(cell, pyramids[:, None] * middles, cells)
-    solid = volumes != 0
-    cell_centers = np.where(solid[:, None], moments / np.where(solid, volumes, 1.0)[:, None], estimate)
-    return Polyhedra(areas, centers + middle, cell_centers + middle, volumes / 3.0)
+    first, faces = faces_of_cells(read_only(owner), read_only(neighbour), cells)
+    cell_centers, volumes = np.empty((cells, 3)), np.empty(cells)
+    in_parts(lambda begin, end: measure_cells(first, faces, areas, centers, cell_centers, volumes, begin, end), cells)
+    centers += middle
+    cell_centers += middle
+    return Polyhedra(areas, centers, cell_centers, volumes, first, faces)

@@ -1,39 +1,51 @@
 """Mesh quality by OpenFOAM's own definitions, one function each, on meshes of any polyhedra.
 
 Source of all: OpenFOAM v1912, `primitiveMeshTools` and `polyMeshTools`. S is a face's area vector, f its center,
-C and N the centers of its owner and neighbour, d = N - C, V a cell's volume. Each takes a mesh and its geometry.
+C and N the centers of its owner and neighbour, d = N - C, V a cell's volume. Each takes a mesh and its geometry; their
+loops, in `pipeline.openfoam.metric_loops`, run on all cores and hold one number for each face or cell.
 """
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from pipeline.geometry.polyhedra import Polyhedra, by_size, sum_per_cell
+from pipeline.geometry.polyhedra import Polyhedra
+from pipeline.geometry.threads import in_parts
 from pipeline.nouns.arrays import Bools, Floats
 from pipeline.nouns.mesh import FaceMesh
+
+if TYPE_CHECKING:
+    from pipeline.openfoam.metric_loops import Measured
 
 TINY = 1e-150
 """Keeps a quotient of nothing by nothing at 0, as OpenFOAM's ROOTVSMALL."""
 
 
-def _dot(a: Floats, b: Floats) -> Floats:
-    product: Floats = np.einsum("ij,ij->i", a, b)
-    return product
+def _filled(
+    loop: "Callable[[Measured, Floats, int, int], None]", mesh: FaceMesh, shape: Polyhedra, count: int
+) -> Floats:
+    # numba takes half a second to load
+    from pipeline.geometry.compiled import read_only
+    from pipeline.openfoam.metric_loops import Measured
 
-
-def _length(vectors: Floats) -> Floats:
-    return np.sqrt(_dot(vectors, vectors))
-
-
-def _between(mesh: FaceMesh, shape: Polyhedra) -> Floats:
-    return shape.cell_centers[mesh.neighbour] - shape.cell_centers[mesh.owner[: mesh.internal]]
+    measured = Measured(
+        mesh.points, mesh.corners, mesh.offsets, mesh.owner, mesh.neighbour, read_only(shape.areas),
+        read_only(shape.centers), read_only(shape.cell_centers), read_only(shape.volumes), read_only(shape.first),
+        read_only(shape.faces), read_only(directions(mesh, shape)),
+    )  # fmt: skip
+    found = np.empty(count)
+    in_parts(lambda begin, end: loop(measured, found, begin, end), count)
+    return found
 
 
 def non_orthogonality(mesh: FaceMesh, shape: Polyhedra) -> Floats:
     """Angle between S and d, (internal,) array [degree]."""
-    between, areas = _between(mesh, shape), shape.areas[: mesh.internal]
-    cosine = _dot(between, areas) / (_length(between) * _length(areas) + TINY)
-    return np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    from pipeline.openfoam.metric_loops import non_orthogonality as loop
+
+    return _filled(loop, mesh, shape, mesh.internal)
 
 
 def skewness(mesh: FaceMesh, shape: Polyhedra) -> Floats:
@@ -42,21 +54,9 @@ def skewness(mesh: FaceMesh, shape: Polyhedra) -> Floats:
     The offset is ``s = (f - C) - (S.(f - C)) / (S.d) d``, the extent ``max(0.2 |d|, |s.(p - f)| / |s|)`` over the
     corners p. On the boundary d is the part of f - C along S, and 0.4 stands for 0.2.
     """
-    n = mesh.internal
-    to_face = shape.centers - shape.cell_centers[mesh.owner]
-    normal = shape.areas[n:] / (_length(shape.areas[n:]) + TINY)[:, None]
-    to_plane = normal * _dot(normal, to_face[n:])[:, None]
-    between = np.concatenate([_between(mesh, shape), to_plane])
-    reach = _dot(shape.areas, to_face) / (_dot(shape.areas, between) + TINY)
-    offset = to_face - reach[:, None] * between
-    size = _length(offset)
-    along = offset / (size + TINY)[:, None]
-    extent = np.where(np.arange(mesh.faces) < n, 0.2, 0.4) * _length(between) + TINY
-    for faces, places in by_size(mesh.offsets):
-        for corner in mesh.corners[places].T:
-            spread = np.abs(_dot(along[faces], mesh.points[corner] - shape.centers[faces]))
-            extent[faces] = np.maximum(extent[faces], spread)
-    return size / extent
+    from pipeline.openfoam.metric_loops import skewness as loop
+
+    return _filled(loop, mesh, shape, mesh.faces)
 
 
 def directions(mesh: FaceMesh, shape: Polyhedra) -> Bools:
@@ -81,30 +81,16 @@ def aspect_ratio(mesh: FaceMesh, shape: Polyhedra) -> Floats:
 
     Of a flat mesh, a_max / a_min in its own directions.
     """
-    _, total = _sums_of_areas(mesh, shape)
-    lively = directions(mesh, shape)
-    if not lively.all():
-        own = total[:, lively] if lively.any() else np.ones((mesh.cells, 1))
-        flat: Floats = own.max(axis=1) / (own.min(axis=1) + TINY)
-        return flat
-    sides = total.max(axis=1) / (total.min(axis=1) + TINY)
-    surface: Floats = total.sum(axis=1) / 6.0 / np.cbrt(np.maximum(shape.volumes, TINY)) ** 2
-    ratio: Floats = np.maximum(sides, surface)
-    return ratio
+    from pipeline.openfoam.metric_loops import aspect_ratio as loop
+
+    return _filled(loop, mesh, shape, mesh.cells)
 
 
 def openness(mesh: FaceMesh, shape: Polyhedra) -> Floats:
     """Largest component of the sum of S over that of abs(S), 0 for a closed cell, (cells,) array [1]."""
-    vector, total = _sums_of_areas(mesh, shape)
-    largest: Floats = (np.abs(vector) / (total + TINY)).max(axis=1)
-    return largest
+    from pipeline.openfoam.metric_loops import openness as loop
 
-
-def _sums_of_areas(mesh: FaceMesh, shape: Polyhedra) -> tuple[Floats, Floats]:
-    inner = shape.areas[: mesh.internal]
-    vector = sum_per_cell(mesh.owner, shape.areas, mesh.cells) - sum_per_cell(mesh.neighbour, inner, mesh.cells)
-    total = sum_per_cell(mesh.owner, np.abs(shape.areas), mesh.cells)
-    return vector, total + sum_per_cell(mesh.neighbour, np.abs(inner), mesh.cells)
+    return _filled(loop, mesh, shape, mesh.cells)
 
 
 def determinant(mesh: FaceMesh, shape: Polyhedra) -> Floats:
@@ -113,48 +99,37 @@ def determinant(mesh: FaceMesh, shape: Polyhedra) -> Floats:
     1 for a cube among cubes; 0 where all internal faces lie in two directions, so that no gradient is known. A flat
     mesh has 1 in the sum's place for the direction that it lacks, and a mesh along a line has 1.
     """
-    lively = directions(mesh, shape)
-    if lively.sum() < 2:
+    if directions(mesh, shape).sum() < 2:
         return np.ones(mesh.cells)
-    n = mesh.internal
-    inner = shape.areas[:n]
-    size = _length(inner)
-    upper = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
-    sums = np.zeros((mesh.cells, 8))
-    for cell in (mesh.owner[:n], mesh.neighbour):
-        columns = [inner[:, i] * inner[:, j] for i, j in upper]
-        for k, column in enumerate([*columns, size, np.ones(n)]):
-            sums[:, k] += np.bincount(cell, column, mesh.cells)
-    mean = sums[:, 6] / np.maximum(sums[:, 7], 1.0)
-    xx, xy, xz, yy, yz, zz = sums[:, :6].T / (mean**2 + TINY)
-    if not lively.all():
-        (xx, yy, zz)[int(np.flatnonzero(~lively)[0])][sums[:, 7] > 0] = 1.0
-    result: Floats = np.abs(xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)) / 8.0
-    return result
+    from pipeline.openfoam.metric_loops import determinant as loop
+
+    return _filled(loop, mesh, shape, mesh.cells)
 
 
 def face_weight(mesh: FaceMesh, shape: Polyhedra) -> Floats:
     """Distance of the nearer cell's center from the face over the sum of both, (internal,) array [1]."""
-    n = mesh.internal
-    own = np.abs(_dot(shape.areas[:n], shape.centers[:n] - shape.cell_centers[mesh.owner[:n]]))
-    other = np.abs(_dot(shape.areas[:n], shape.cell_centers[mesh.neighbour] - shape.centers[:n]))
-    return np.minimum(own, other) / (own + other + TINY)
+    from pipeline.openfoam.metric_loops import face_weight as loop
+
+    return _filled(loop, mesh, shape, mesh.internal)
 
 
 def volume_ratio(mesh: FaceMesh, shape: Polyhedra) -> Floats:
     """Smaller over larger volume of the two cells of a face, (internal,) array [1]."""
-    own, other = np.abs(shape.volumes[mesh.owner[: mesh.internal]]), np.abs(shape.volumes[mesh.neighbour])
-    return np.minimum(own, other) / (np.maximum(own, other) + TINY)
+    from pipeline.openfoam.metric_loops import volume_ratio as loop
+
+    return _filled(loop, mesh, shape, mesh.internal)
 
 
 def volume(mesh: FaceMesh, shape: Polyhedra) -> Floats:
     """Volume, (cells,) array [m3]."""
-    return shape.volumes
+    return shape.volumes.copy()
 
 
 def face_area(mesh: FaceMesh, shape: Polyhedra) -> Floats:
     """Area, (faces,) array [m2]."""
-    return _length(shape.areas)
+    from pipeline.openfoam.metric_loops import face_area as loop
+
+    return _filled(loop, mesh, shape, mesh.faces)
 
 
 def face_pyramid(mesh: FaceMesh, shape: Polyhedra) -> Floats:
@@ -163,12 +138,9 @@ def face_pyramid(mesh: FaceMesh, shape: Polyhedra) -> Floats:
     Below 0 the cell is folded there. `checkMesh` compares it with -1e-15 m3, which is larger than a whole cell of a
     mesh in micrometers: relative to the cell nothing slips through. A tetrahedron has 1/4.
     """
-    n = mesh.internal
-    share = _dot(shape.areas, shape.centers - shape.cell_centers[mesh.owner])
-    share /= 3.0 * (np.abs(shape.volumes[mesh.owner]) + TINY)
-    other = _dot(shape.areas[:n], shape.cell_centers[mesh.neighbour] - shape.centers[:n])
-    share[:n] = np.minimum(share[:n], other / (3.0 * (np.abs(shape.volumes[mesh.neighbour]) + TINY)))
-    return share
+    from pipeline.openfoam.metric_loops import face_pyramid as loop
+
+    return _filled(loop, mesh, shape, mesh.faces)
 
 
 def concavity(mesh: FaceMesh, shape: Polyhedra) -> Floats:
@@ -177,14 +149,9 @@ def concavity(mesh: FaceMesh, shape: Polyhedra) -> Floats:
     Above 0 the cell is concave there, 0 is a side that is cut in two; `checkMesh -allGeometry` calls concave what is
     above -1e-6.
     """
-    from pipeline.openfoam.decomposition import largest_cosines
+    from pipeline.openfoam.metric_loops import concavity as loop
 
-    cell = np.concatenate([mesh.owner, mesh.neighbour])
-    face = np.concatenate([np.arange(mesh.faces), np.arange(mesh.internal)])
-    sign = np.where(np.arange(len(cell)) < mesh.faces, 1.0, -1.0)
-    order = np.argsort(cell, kind="stable")
-    first = np.concatenate([[0], np.cumsum(np.bincount(cell, minlength=mesh.cells))])
-    return largest_cosines(first, face[order], sign[order], shape.areas, shape.centers)
+    return _filled(loop, mesh, shape, mesh.cells)
 
 
 def face_tets(mesh: FaceMesh, shape: Polyhedra) -> Floats:
@@ -193,9 +160,6 @@ def face_tets(mesh: FaceMesh, shape: Polyhedra) -> Floats:
     Particles are tracked and fields interpolated through these; not above 0 one is turned inside out or flat
     (`polyMeshTetDecomposition::checkFaceTets`).
     """
-    from pipeline.openfoam.decomposition import smallest_tets
+    from pipeline.openfoam.metric_loops import face_tets as loop
 
-    return smallest_tets(
-        mesh.points, mesh.corners, mesh.offsets, mesh.owner, mesh.neighbour, shape.centers, shape.cell_centers,
-        shape.volumes,
-    )  # fmt: skip
+    return _filled(loop, mesh, shape, mesh.faces)

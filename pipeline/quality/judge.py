@@ -2,7 +2,8 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-from collections.abc import Callable, Iterator
+import math
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -10,10 +11,11 @@ import numpy as np
 
 from pipeline.geometry.parts import parts
 from pipeline.geometry.polyhedra import Polyhedra
+from pipeline.geometry.threads import in_parts
 from pipeline.machine import cores
 from pipeline.nouns.arrays import Bools, Floats
 from pipeline.nouns.mesh import FaceMesh
-from pipeline.nouns.quality import Metric, QualityReport
+from pipeline.nouns.quality import CellFields, Metric, QualityReport
 from pipeline.openfoam import metrics as definitions
 from pipeline.progress import Progress, silent
 from pipeline.quality.settings import QualitySettings
@@ -21,7 +23,8 @@ from pipeline.quality.settings import QualitySettings
 WORST = 5
 """How many of the worst cells or faces a report names."""
 _LARGE = 100_000  # cells from which threads pay
-_Measured = tuple[Metric | None, Floats | None]
+_FIELDS = ("volume", *QualitySettings.model_fields)
+_BLOCK = 1_000_000  # values whose cosines are held at a time
 USELESS_ANGLE = 90.0
 """Non-orthogonality [degree] from which a face passes flux backwards; `checkMesh` fails there."""
 
@@ -87,12 +90,12 @@ def judge(
     QualityReport
         A metric that the mesh has nothing to measure with (one cell has no internal face) is left out.
     """
-    return judge_with_fields(mesh, settings, progress, own)[0]
+    return _judged(mesh, mesh.polyhedra(), settings or QualitySettings(), progress, own, {})
 
 
 def judge_with_fields(
     mesh: FaceMesh, settings: QualitySettings | None = None, progress: Progress = silent, own: Bools | None = None
-) -> tuple[QualityReport, dict[str, Floats]]:
+) -> tuple[QualityReport, CellFields]:
     """Judge a mesh, and give the values that the report sums up cell by cell: each metric is computed once.
 
     Parameters
@@ -103,28 +106,41 @@ def judge_with_fields(
     Returns
     -------
     QualityReport
-    fields : dict of (cells,) arrays
-        As `cell_fields` gives them.
+    CellFields
+        One value per cell of each metric that has a limit to choose; a metric of faces gives the worst of its faces.
     """
     settings = settings or QualitySettings()
     shape = mesh.polyhedra()
+    values = np.empty((len(_FIELDS), mesh.cells))
+    report = _judged(mesh, shape, settings, progress, own, dict(zip(_FIELDS, values, strict=True)))
+    values.flags.writeable = False  # what is read-only is not copied where it is kept
+    return report, CellFields(_FIELDS, values)
+
+
+def _judged(
+    mesh: FaceMesh,
+    shape: Polyhedra,
+    settings: QualitySettings,
+    progress: Progress,
+    own: Bools | None,
+    fields: Mapping[str, Floats],
+) -> QualityReport:
+    """Judge a mesh and fill in the fields that are asked for; no more than two metrics are held at a time."""
     found: dict[str, Metric] = {}
-    fields = {"volume": shape.volumes}
     reasons, notes = _topology(mesh)
     warnings: list[str] = []
 
-    def measured(name: str) -> tuple[Metric | None, Floats | None]:
+    def measured(name: str) -> Metric | None:
         definition = _DEFINITIONS[name]
         values = definition.compute(mesh, shape)
+        if name in fields:
+            _fill(fields[name], shape, definition, values)
         limit = getattr(settings, name, definition.fixed_limit)
         chosen = _chosen(mesh, definition.where, own)
-        metric = _summary(name, definition, values, limit, shape, chosen) if len(values) else None
-        return metric, _per_cell(mesh, definition, values) if name in QualitySettings.model_fields else None
+        return _summary(name, definition, values, limit, shape, chosen) if len(values) else None
 
-    for done, (name, (metric, field)) in enumerate(zip(_DEFINITIONS, _by_all_cores(measured, mesh), strict=True)):
+    for done, (name, metric) in enumerate(zip(_DEFINITIONS, _by_all_cores(measured, mesh), strict=True)):
         progress(f"quality: {name}", done / len(_DEFINITIONS))
-        if field is not None:
-            fields[name] = field
         if metric is None:
             continue
         found[name] = metric
@@ -133,7 +149,7 @@ def judge_with_fields(
             useless = name == "non_orthogonality" and metric.max >= USELESS_ANGLE
             (warnings if definition.mild and not useless else reasons).append(_sentence(metric))
     verdict = "fail" if reasons else "warn" if warnings else "pass"
-    report = QualityReport(
+    return QualityReport(
         cells=mesh.cells,
         points=len(mesh.points),
         faces=mesh.faces,
@@ -145,24 +161,29 @@ def judge_with_fields(
         reasons=(*reasons, *warnings),
         notes=tuple(notes),
     )
-    return report, {name: fields[name] for name in ("volume", *QualitySettings.model_fields)}
 
 
-def _by_all_cores(measured: Callable[[str], _Measured], mesh: FaceMesh) -> Iterator[_Measured]:
-    """Measure by every definition, in their order: some at a time where a mesh is large, since numpy lets go."""
+def _by_all_cores(measured: Callable[[str], Metric | None], mesh: FaceMesh) -> Iterator[Metric | None]:
+    """Measure by every definition, in their order: some at a time where a mesh is large, since loops let go."""
     threads = cores() if mesh.cells >= _LARGE else 1
     if threads == 1:
         yield from map(measured, _DEFINITIONS)
         return
-    # no more than two, for memory's sake: each holds vectors over all faces
+    # no more than two, for memory's sake: each holds a number for every face
     with ThreadPoolExecutor(max_workers=min(2, threads)) as pool:
         yield from pool.map(measured, _DEFINITIONS)
 
 
-def measure(mesh: FaceMesh) -> dict[str, Floats]:
-    """Give every value of every metric, for histograms: one array per metric, as `judge` measures it."""
+def measure(mesh: FaceMesh) -> Iterator[tuple[str, Floats]]:
+    """Give every value of every metric, for histograms, one metric at a time: its name and the values.
+
+    Yields
+    ------
+    str, (faces,), (internal,) or (cells,) array
+    """
     shape = mesh.polyhedra()
-    return {name: definition.compute(mesh, shape) for name, definition in _DEFINITIONS.items()}
+    for name, definition in _DEFINITIONS.items():
+        yield name, definition.compute(mesh, shape)
 
 
 def cell_fields(mesh: FaceMesh) -> dict[str, Floats]:
@@ -174,20 +195,24 @@ def cell_fields(mesh: FaceMesh) -> dict[str, Floats]:
     -------
     dict of (cells,) arrays
     """
-    return judge_with_fields(mesh)[1]
+    shape = mesh.polyhedra()
+    fields = {name: np.empty(mesh.cells) for name in _FIELDS}
+    for name, field in fields.items():
+        _fill(field, shape, _DEFINITIONS[name], _DEFINITIONS[name].compute(mesh, shape))
+    return fields
 
 
-def _per_cell(mesh: FaceMesh, definition: _Definition, values: Floats) -> Floats:
-    return values if definition.where == "cells" else _worst_of_faces(mesh, values, definition.worst_is)
+def _fill(field: Floats, shape: Polyhedra, definition: _Definition, values: Floats) -> None:
+    """Give each cell its value, or the worst of its faces."""
+    if definition.where == "cells":
+        field[:] = values
+        return
+    from pipeline.quality.loops import worst_of_faces
 
-
-def _worst_of_faces(mesh: FaceMesh, values: Floats, worst_is: str) -> Floats:
-    best, worse = (-np.inf, np.maximum) if worst_is == "largest" else (np.inf, np.minimum)
-    worst = np.full(mesh.cells, best)
-    worse.at(worst, mesh.owner[: len(values)], values)
-    worse.at(worst, mesh.neighbour, values[: mesh.internal])
-    # a cell without a single internal face
-    return np.where(np.isfinite(worst), worst, 0.0 if worst_is == "largest" else 1.0)
+    largest = definition.worst_is == "largest"
+    in_parts(
+        lambda begin, end: worst_of_faces(shape.first, shape.faces, values, largest, field, begin, end), len(field)
+    )
 
 
 def _chosen(mesh: FaceMesh, where: str, own: Bools | None) -> Bools | None:
@@ -207,36 +232,50 @@ def _summary(
     shape: Polyhedra,
     chosen: Bools | None,
 ) -> Metric:
-    rows = np.arange(len(values)) if chosen is None else np.flatnonzero(chosen)
-    values = values[rows]
+    from pipeline.quality.loops import worst_rows
+
+    rows = None if chosen is None else np.flatnonzero(chosen)
+    if rows is not None:
+        values = values[rows]
     largest = definition.worst_is == "largest"
     if limit is None:
         over = 0
     elif largest:
-        over = int((values > limit).sum())
+        over = int(np.count_nonzero(values > limit))
     else:
-        over = int(((values < limit) | (values <= 0)).sum())
-    few = min(WORST, len(values))
-    ranks = np.argpartition(-values if largest else values, few - 1)[:few]
-    ranks = ranks[np.argsort(-values[ranks] if largest else values[ranks], kind="stable")]
+        # nothing below 0 is right, whatever the limit
+        over = int(np.count_nonzero((values < limit) | (values <= 0)))
+    ranks = worst_rows(values, min(WORST, len(values)), largest)
+    numbers = ranks if rows is None else rows[ranks]
     places = shape.cell_centers if definition.where == "cells" else shape.centers
+    worst = tuple(
+        (int(number), float(values[rank]), _place(places[number])) for number, rank in zip(numbers, ranks, strict=True)
+    )
     mean = float(values.mean())
     if name == "non_orthogonality":
-        mean = float(np.degrees(np.arccos(np.cos(np.radians(values)).mean())))
+        mean = math.degrees(math.acos(_mean_cosine(values)))
     return Metric(
         name=name,
         unit=definition.unit,
         where=definition.where,
         min=float(values.min()),
         mean=mean,
-        p99=float(np.percentile(values, 99)),
         max=float(values.max()),
+        # last, since it leaves the values in another order: a sorted copy of each is what a mesh has no room for
+        p99=float(np.percentile(values, 99, overwrite_input=True)),
         limit=limit,
         worst_is=definition.worst_is,
         over_limit=over,
-        worst=tuple((int(rows[k]), float(values[k]), _place(places[rows[k]])) for k in ranks),
+        worst=worst,
         source=definition.source,
     )
+
+
+def _mean_cosine(angles: Floats) -> float:
+    """Mean cosine of angles [degree]."""
+    blocks = (angles[start : start + _BLOCK] for start in range(0, len(angles), _BLOCK))
+    # a mean of ones may be a bit more by rounding
+    return min(1.0, sum(float(np.cos(np.radians(block)).sum()) for block in blocks) / len(angles))
 
 
 def _place(point: Floats) -> tuple[float, float, float]:

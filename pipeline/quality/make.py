@@ -5,12 +5,9 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from pipeline.line import store
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.mesh_measures import TetmeshMeasures
-from pipeline.nouns.quality import CellFields
 from pipeline.progress import Progress
 from pipeline.quality.judge import judge_with_fields
 from pipeline.quality.walls import with_walls
@@ -27,5 +24,5 @@ def make(results: "Results", into: Path, progress: Progress) -> "Counts":
     if measures.fidelity is not None:
         report = with_walls(report, measures.fidelity, results.case.tetmesh.deviation)
     store.write_json(into / "quality.json", report)
-    store.save(CellFields(tuple(fields), np.stack(list(fields.values()))), into / "fields.npz")
+    store.save(fields, into / "fields.npz")
     return {"verdict": report.verdict, "max_non_orthogonality": report.metrics["non_orthogonality"].max}

@@ -79,7 +79,7 @@ def test_a_face_above_the_limit_warns_and_is_counted_and_placed() -> None:
     mesh = duct((6, 6, 12), hole=False, jitter=0.2).face_mesh()
     report = judge(mesh, settings)
     metric = report.metrics["non_orthogonality"]
-    values = measure(mesh)["non_orthogonality"]
+    values = dict(measure(mesh))["non_orthogonality"]
     assert metric.over_limit == int((values > 30).sum()) > 0
     index, value, place = metric.worst[0]
     assert value == metric.max == values[index]
@@ -156,7 +156,7 @@ def test_parts_that_do_not_touch_are_noted_and_unused_points_fail() -> None:
 def test_metrics_do_not_depend_on_the_unit_of_length() -> None:
     mesh = duct(jitter=0.2)
     small = TetMesh(mesh.points * 1e-6, mesh.tets, mesh.faces, mesh.patch, mesh.patches, mesh.slab)
-    large, tiny = measure(mesh.face_mesh()), measure(small.face_mesh())
+    large, tiny = dict(measure(mesh.face_mesh())), dict(measure(small.face_mesh()))
     for name in QualitySettings.model_fields:
         # an angle near 0 knows half the digits of its cosine, in degrees
         assert tiny[name] == pytest.approx(large[name], rel=1e-7, abs=1e-5), name
@@ -164,7 +164,7 @@ def test_metrics_do_not_depend_on_the_unit_of_length() -> None:
 
 def test_a_cell_shows_the_worst_of_its_faces() -> None:
     mesh = duct(jitter=0.2).face_mesh()
-    fields, values = cell_fields(mesh), measure(mesh)
+    fields, values = cell_fields(mesh), dict(measure(mesh))
     for name, worst in (("non_orthogonality", max), ("skewness", max), ("face_weight", min), ("volume_ratio", min)):
         of_cell: list[list[float]] = [[] for _ in range(mesh.cells)]
         for face, value in enumerate(values[name].tolist()):

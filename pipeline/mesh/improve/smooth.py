@@ -17,10 +17,9 @@ from pipeline.geometry.compiled import compiled, compiled_for_threads
 from pipeline.geometry.tets import FACES, Cells
 from pipeline.geometry.threads import in_parts
 from pipeline.geometry.triangles import area_vectors, vertex_sums
+from pipeline.geometry.vectors import Vector, cross, dot, minus
 from pipeline.mesh.working_mesh import INTERFACE, WorkingMesh
 from pipeline.nouns.arrays import Bools, Floats, Ints
-
-Vector = tuple[float, float, float]
 
 _AIM_ANGLE = math.radians(68.0)  # under the usual limit of 70 degrees, by what rounding and neighbors may cost
 _AIM_SKEWNESS = 3.5  # under the usual limit of 4
@@ -54,50 +53,35 @@ def _center(points: Floats, tets: Cells, cell: int) -> Vector:
 
 
 @compiled
-def _minus(a: Vector, b: Vector) -> Vector:
-    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
-
-
-@compiled
-def _dot(a: Vector, b: Vector) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-@compiled
-def _cross(a: Vector, b: Vector) -> Vector:
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-
-
-@compiled
 def _fault(points: Floats, tets: Cells, across: Cells, cell: int, side: int) -> float:
     """How far the face of a cell is beyond what is aimed at; 1 is the aim, above it is a fault."""
     other = across[cell, side]
     if other < 0:
         return 0.0
     center = _center(points, tets, cell)
-    line = _minus(_center(points, tets, other), center)
+    line = minus(_center(points, tets, other), center)
     a = _corner(points, tets, cell, FACES[side, 0])
     b = _corner(points, tets, cell, FACES[side, 1])
     c = _corner(points, tets, cell, FACES[side, 2])
-    normal = _cross(_minus(b, a), _minus(c, a))
-    area = math.sqrt(_dot(normal, normal))
-    along = _dot(normal, line)  # times the area, as the heights below
+    normal = cross(minus(b, a), minus(c, a))
+    area = math.sqrt(dot(normal, normal))
+    along = dot(normal, line)  # times the area, as the heights below
     if area == 0.0 or along <= 0.0:
         return _HOPELESS
-    sideways = _cross(normal, line)
-    angle = math.atan2(math.sqrt(_dot(sideways, sideways)), along)
+    sideways = cross(normal, line)
+    angle = math.atan2(math.sqrt(dot(sideways, sideways)), along)
     middle = ((a[0] + b[0] + c[0]) / 3.0, (a[1] + b[1] + c[1]) / 3.0, (a[2] + b[2] + c[2]) / 3.0)
-    inward = _minus(middle, center)
-    height = _dot(normal, inward)
+    inward = minus(middle, center)
+    height = dot(normal, inward)
     share = height / along
     if share <= 0.0 or share >= 1.0:
         return _HOPELESS
     aside = (inward[0] - share * line[0], inward[1] - share * line[1], inward[2] - share * line[2])
-    skew = math.sqrt(_dot(aside, aside))
-    reach = 0.2 * math.sqrt(_dot(line, line))
+    skew = math.sqrt(dot(aside, aside))
+    reach = 0.2 * math.sqrt(dot(line, line))
     if skew > 0.0:
         for corner in (a, b, c):
-            reach = max(reach, abs(_dot(aside, _minus(corner, middle))) / skew)
+            reach = max(reach, abs(dot(aside, minus(corner, middle))) / skew)
     weight = min(share, 1.0 - share)
     return float(max(angle / _AIM_ANGLE, skew / reach / _AIM_SKEWNESS, _AIM_WEIGHT / weight))
 
@@ -106,12 +90,12 @@ def _fault(points: Floats, tets: Cells, across: Cells, cell: int, side: int) -> 
 def _flatness(points: Floats, tets: Cells, cell: int) -> float:
     """0 for a cell of at least the least volume, else above every fault, and the more the worse it is inverted."""
     a = _corner(points, tets, cell, 0)
-    b = _minus(_corner(points, tets, cell, 1), a)
-    c = _minus(_corner(points, tets, cell, 2), a)
-    d = _minus(_corner(points, tets, cell, 3), a)
+    b = minus(_corner(points, tets, cell, 1), a)
+    c = minus(_corner(points, tets, cell, 2), a)
+    d = minus(_corner(points, tets, cell, 3), a)
     # by its own size: the cells at a thin fiber are ten thousand times smaller than those at a thick one
-    longest = max(_dot(b, b), _dot(c, c), _dot(d, d))
-    volume = _dot(_cross(b, c), d)
+    longest = max(dot(b, b), dot(c, c), dot(d, d))
+    volume = dot(cross(b, c), d)
     least = _THINNEST * longest * math.sqrt(longest)
     return 0.0 if volume >= least else 10.0 * _HOPELESS * (2.0 - volume / max(least, 1e-300))
 
@@ -126,8 +110,8 @@ def _indeterminacy(points: Floats, tets: Cells, across: Cells, cell: int) -> flo
         if INTERFACE <= across[cell, side] < 0:
             continue
         a = _corner(points, tets, cell, FACES[side, 0])
-        b = _minus(_corner(points, tets, cell, FACES[side, 1]), a)
-        x, y, z = _cross(b, _minus(_corner(points, tets, cell, FACES[side, 2]), a))
+        b = minus(_corner(points, tets, cell, FACES[side, 1]), a)
+        x, y, z = cross(b, minus(_corner(points, tets, cell, FACES[side, 2]), a))
         inner += 1
         total += math.sqrt(x * x + y * y + z * z)
         xx += x * x

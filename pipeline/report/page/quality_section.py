@@ -2,13 +2,12 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from pipeline.line.results import Results
-from pipeline.nouns.arrays import Floats
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.quality import Metric, QualityReport
 from pipeline.nouns.section import Charts, Columns, Heading, Part, Picture, Section, Table, Text
@@ -63,12 +62,12 @@ def quality_section(report: QualityReport, mesh: FaceMesh | None, view: str) -> 
     view : str
         The view that shows the worst places.
     """
-    values: Mapping[str, Floats] = measure(mesh) if mesh is not None else {}
+    measured = measure(mesh) if mesh is not None else ()
     unit = unit_of(mesh) if mesh is not None else MICROMETER
     drawn = [
         chart
-        for name, metric in report.metrics.items()
-        if name in values and (chart := charts.metric_histogram(metric, values[name])) is not None
+        for name, values in measured
+        if name in report.metrics and (chart := charts.metric_histogram(report.metrics[name], values)) is not None
     ]
     mark = {"pass": "good", "warn": "note"}.get(report.verdict, "bad")
     worst = Table(
