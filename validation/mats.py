@@ -21,7 +21,7 @@ from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.progress import Progress, silent
 from pipeline.solve.settings import SolveSettings
 
-REFINED = range(1, 4)
+REFINED = range(1, 6)
 """Seeds that are solved on every mesh."""
 SEEDS = range(1, 11)
 """Seeds that are solved on the usual mesh of both meshers."""
