@@ -93,6 +93,8 @@ class Guardian:
             told.update(left)
             time.sleep(0.01)
             self._collect()
+        # one that has just ended is not left, and its processor time counts once it is collected
+        self._collect()
 
     def _left(self) -> list[int]:
         """Give all that descends from this process and runs; elsewhere than on Linux, the command alone."""
