@@ -127,9 +127,11 @@ def field_case(name: str) -> Case:
         "corner": {"side": "6 um", "thickness": "5 um", "stop": {"count": 6}},
         "whole": {"side": "100 um", "thickness": "20 um", "broken": 0.5, "stop": {"solidity": 0.05}},
     }
+    # 18 million cells; at the default edge there are 27
+    edge = {"corner": 0.6, "whole": 0.8}[name]
     return validate(
         {"mat": {**mat, **sizes[name]}, "enclosure": {"inlet": "3 um", "outlet": "3 um"},
-         "tetmesh": {"engine": "lattice"}}, name,
+         "tetmesh": {"engine": "lattice", "edge": edge}}, name,
     )  # fmt: skip
 
 

@@ -54,6 +54,7 @@ stop = { coverage = 0.2 }
 inlet = "3 um"
 outlet = "3 um"
 [tetmesh]
+engine = "lattice"
 edge = 1.0
 largest_edge = 2.0
 deviation = 1.0
