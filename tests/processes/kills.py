@@ -1,4 +1,4 @@
-"""Kill runs at random moments: ``python -m tests.processes.kills 50 [part of a variant's name]``.
+"""Kill runs at random moments: ``python -m tests.processes.kills 50 [part of a variant's name [signal]]``.
 
 Each run is ended by SIGKILL, SIGTERM or Ctrl-C at a moment anywhere in its stages and in the programs that they start.
 Then no process and no temporary folder may be left, and the same command must end in the results of a run that nobody
@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -37,12 +38,26 @@ SIGNALS = {signal.SIGKILL: -9, signal.SIGTERM: 143, signal.SIGINT: 130}
 
 @dataclass(frozen=True)
 class Variant:
-    """A way through the line: its last stage, its settings, and which of its stages give other bytes each time."""
+    """A way through the line.
+
+    Parameters
+    ----------
+    until : str
+        Its last stage.
+    settings : tuple of str
+    random : tuple of str
+        Stages that give other bytes each time.
+    needs : str
+        A program, where it needs one.
+    made : str
+        The last stage that is there before each run, so that a kill hits what comes after.
+    """
 
     until: str
     settings: tuple[str, ...]
     random: tuple[str, ...] = ()
     needs: str = ""
+    made: str = ""
 
     @property
     def possible(self) -> bool:
@@ -67,6 +82,13 @@ VARIANTS = {
         ("solve", "report"),
         "simpleFoam",
     ),
+    "the solver of OpenFOAM alone, on two cores": Variant(
+        "solve",
+        ("tetmesh.engine=lattice", "solve.engine=openfoam", "solve.openfoam.cores=2"),
+        ("solve", "report"),
+        "simpleFoam",
+        made="export",
+    ),
 }
 
 
@@ -88,19 +110,27 @@ class Kills:
 
     def __post_init__(self) -> None:
         (self.place / "case.toml").write_text(CASE)
+        if self.variant.made:
+            assert self.started(Marked(self.place / "tmp"), self.place / "made", self.variant.made).wait() == 0
         for attempt in ("warm", "reference"):
             began = time.monotonic()
+            self.copied(self.place / attempt)
             done = self.started(Marked(self.place / "tmp"), self.place / attempt).wait()
             assert done == 0, f"the run itself failed in {self.place / attempt}"
             self.seconds = time.monotonic() - began
         self.reference = self.results(self.place / "reference")
 
-    def started(self, marked: Marked, run: Path) -> "subprocess.Popen[bytes]":
+    def copied(self, run: Path) -> None:
+        """Give a run the stages that are there before."""
+        if self.variant.made:
+            shutil.copytree(self.place / "made", run)
+
+    def started(self, marked: Marked, run: Path, until: str = "") -> "subprocess.Popen[bytes]":
         command = [sys.executable, "-m", "pipeline.cli", "run", str(self.place / "case.toml"), "--quiet"]
         options = [part for setting in self.variant.settings for part in ("--set", setting)]
         with (self.place / "said").open("ab") as said:
             return subprocess.Popen(
-                [*command, "--out", str(run), "--until", self.variant.until, *options],
+                [*command, "--out", str(run), "--until", until or self.variant.until, *options],
                 env=marked.environment,
                 stdout=said,
                 stderr=said,
@@ -123,11 +153,12 @@ class Kills:
                 assert not same or found[f"{stage.name}/{name}"] == digest
         return found
 
-    def kill(self, draw: random.Random) -> str:
+    def kill(self, draw: random.Random, signals: Sequence[signal.Signals] = tuple(SIGNALS)) -> str:
         """End one run at a random moment, check what is left, and let it go on; tell in a few words how it went."""
         marked = Marked(self.place / "tmp")
         run = self.place / f"run-{draw.getrandbits(32):08x}"
-        number, moment = draw.choice(list(SIGNALS)), draw.uniform(0.0, self.seconds)
+        number, moment = draw.choice(signals), draw.uniform(0.0, self.seconds)
+        self.copied(run)
         child = self.started(marked, run)
         time.sleep(moment)
         child.send_signal(number)
@@ -153,6 +184,7 @@ class Kills:
 def main() -> int:
     """Kill as many runs of each variant as asked for; exit code 1 if anything was left or came out otherwise."""
     count, part = int(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else ""
+    signals = (signal.Signals[sys.argv[3]],) if len(sys.argv) > 3 else tuple(SIGNALS)
     failed = 0
 
     def tell(words: str) -> None:
@@ -168,7 +200,7 @@ def main() -> int:
         draw = random.Random(name)
         for _ in range(count):
             try:
-                tell(f"  {name}: {kills.kill(draw)}: held")
+                tell(f"  {name}: {kills.kill(draw, signals)}: held")
             except AssertionError as problem:
                 bad.append(str(problem))
                 tell(f"  {name}: {problem}")
