@@ -5,6 +5,8 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from pipeline.errors import StageError
 from pipeline.mesh.engines.flawed import FlawedMeshError
 from pipeline.mesh.estimate import UNSURE, slenderness, too_large
@@ -12,6 +14,7 @@ from pipeline.mesh.settings import TetmeshSettings
 from pipeline.mesh.wall_error import fidelity
 from pipeline.mesh.wall_fibers import wall_fibers
 from pipeline.nouns.domain import FluidDomain
+from pipeline.nouns.fidelity import Fidelity
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.progress import NOTE, Progress, silent
@@ -69,14 +72,14 @@ def _sound(
     """Mesh once, and hold the mesh against the fibers."""
     engine = settings.mesher
     mesh, measures = engine.mesh(domain, settings, progress, folder)
-    if abs(measures.volume_error) > settings.volume_error:
-        raise FlawedMeshError(
-            f"the mesh keeps the fibers' volume to {measures.volume_error:+.2%}, allowed is "
-            f"{settings.volume_error:.2%}; {engine.truer}, or raise tetmesh.volume_error"
-        )
     progress("measuring the walls", 0.95)
     mesh = replace(mesh, fiber=wall_fibers(mesh, domain))
     found = fidelity(mesh, domain)
+    if abs(measures.volume_error) > settings.volume_error:
+        raise FlawedMeshError(
+            f"the mesh keeps the fibers' volume to {measures.volume_error:+.2%}, allowed is "
+            f"{settings.volume_error:.2%}{_most_off(found, domain)}; {engine.truer}, or raise tetmesh.volume_error"
+        )
     faults = found.faults(settings.deviation)
     if faults:
         raise FlawedMeshError(
@@ -84,6 +87,20 @@ def _sound(
             f"diameters), or raise tetmesh.deviation (now {settings.deviation:g})"
         )
     return mesh, replace(measures, fidelity=found)
+
+
+def _most_off(found: Fidelity, domain: FluidDomain) -> str:
+    """Name the fiber whose walls miss the most of its volume, and where it is; nothing where no axis is known."""
+    if not len(domain.pieces):
+        return ""
+    worst = max(found.fibers, key=lambda walls: abs(walls.radius_error) * walls.area * walls.diameter**3)
+    own = np.flatnonzero(domain.pieces.fiber == worst.fiber)
+    piece = own[len(own) // 2]
+    x, y, z = 5e5 * (domain.pieces.start[piece] + domain.pieces.end[piece])
+    return (
+        f", most of it at fiber {worst.fiber} of {len(found.fibers)} (d {worst.diameter * 1e6:.3g} um, through "
+        f"({x:.3g}, {y:.3g}, {z:.3g}) um), whose walls stand {worst.radius_error:+.1%} of its radius off it"
+    )
 
 
 def engine_missing(settings: TetmeshSettings) -> str | None:

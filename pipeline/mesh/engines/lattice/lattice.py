@@ -40,11 +40,14 @@ _CELLS = 12.0  # of the mesh for each cube: measured 11.4 to 13.3
 _AIR = 0.02  # cubes between the surface and the center of a tetrahedron that is kept though all its corners lie there
 _THROUGH = 0.1  # cubes that the middle of its edges may lie in a fiber: chords do
 _THICK = 0.01  # volume of such a tetrahedron, in cubes
-_FINER = 1  # levels of smaller cubes where air is narrow
+FINER = (1, 2)
+"""Levels of smaller cubes where air is narrow, and those where that leaves the fibers' volume off by too much."""
 _NARROW = 0.75  # cubes between walls that face each other
 
 
-def lattice_mesh(domain: FluidDomain, settings: TetmeshSettings, progress: Progress) -> tuple[WorkingMesh, MeshingCost]:
+def lattice_mesh(
+    domain: FluidDomain, settings: TetmeshSettings, progress: Progress, finer: int = FINER[0]
+) -> tuple[WorkingMesh, MeshingCost]:
     """Fill the air with tetrahedra, whose vertices at the fibers lie on the true cylinders.
 
     Cubes at a fiber have the edge `settings.edge` times its own diameter; away from it they double where
@@ -56,6 +59,8 @@ def lattice_mesh(domain: FluidDomain, settings: TetmeshSettings, progress: Progr
     domain : FluidDomain
     settings : TetmeshSettings
     progress : Progress
+    finer : int
+        How often cubes are halved where air is narrow.
 
     Returns
     -------
@@ -74,7 +79,7 @@ def lattice_mesh(domain: FluidDomain, settings: TetmeshSettings, progress: Progr
     """
     began = time.monotonic()
     progress("filling the duct with cubes", 0.1)
-    tree, edge = _cubes(domain, settings)
+    tree, edge = _cubes(domain, settings, finer)
     distance = fiber_distance(domain, 2.0 * wanted_edges(domain, settings))
     progress("measuring the distance to the fibers", 0.2)
     lattice, value = _filled(domain, tree, edge, distance)
@@ -138,7 +143,7 @@ def lattice_part(
         np.maximum(np.floor((low - lower) / edge).astype(np.int64) - around, 0),
         np.minimum(np.ceil((high - lower) / edge).astype(np.int64) + around, counts),
     )
-    tree, edge = _cubes(domain, settings, window)
+    tree, edge = _cubes(domain, settings, FINER[0], window)
     size = np.int64(1) << tree.level
     near = (tree.low < window[1] - around // 2) | (window[1] == counts)
     near &= (tree.low + size[:, None] > window[0] + around // 2) | (window[0] == 0)
@@ -187,17 +192,17 @@ def wanted_edges(domain: FluidDomain, settings: TetmeshSettings) -> Floats:
 
 def cubes_of(domain: FluidDomain, settings: TetmeshSettings) -> tuple[Ints, Floats, int]:
     """Give the smallest cubes along each axis, their extents [m], and how many of them the largest cube spans."""
-    _, cubes, largest = _demand(domain, settings)
+    _, cubes, largest = _demand(domain, settings, FINER[0])
     return cubes.counts, cubes.edge, 1 << max(0, int(np.floor(np.log2(1.001 * largest / cubes.edge.max()))))
 
 
 def _cubes(
-    domain: FluidDomain, settings: TetmeshSettings, window: tuple[Ints, Ints] | None = None
+    domain: FluidDomain, settings: TetmeshSettings, finer: int, window: tuple[Ints, Ints] | None = None
 ) -> tuple["Octree", Floats]:
     """Cut the duct, or a window of it, into cubes: the tree, and the smallest cube's extent along each axis [m]."""
     from pipeline.mesh.engines.lattice.octree import octree
 
-    demand, cubes, _ = _demand(domain, settings)
+    demand, cubes, _ = _demand(domain, settings, finer)
     wrapped = np.array([domain.cyclic, domain.cyclic, False])
     slender, parts = slenderness(domain), window is None and not domain.cyclic
 
@@ -209,7 +214,7 @@ def _cubes(
     return octree(demand, cubes.counts, cubes.edge, _NARROW, wrapped, refuse, window), cubes.edge
 
 
-def _demand(domain: FluidDomain, settings: TetmeshSettings) -> "tuple[Demand, Grid, float]":
+def _demand(domain: FluidDomain, settings: TetmeshSettings, finer: int) -> "tuple[Demand, Grid, float]":
     """Tell what the fibers ask for, the smallest cubes that suit it, and the largest edge of any cube [m]."""
     from pipeline.geometry.cylinders import table
     from pipeline.mesh.engines.lattice.octree import Demand
@@ -224,7 +229,7 @@ def _demand(domain: FluidDomain, settings: TetmeshSettings) -> "tuple[Demand, Gr
     if settings.growth == 0.0:
         largest = float(wanted.min())
     wrapped = np.array([domain.cyclic, domain.cyclic, False])
-    cubes = grid(upper - lower, wanted, (lengths * domain.radius)[there], _FINER, largest, wrapped)
+    cubes = grid(upper - lower, wanted, (lengths * domain.radius)[there], finer, largest, wrapped)
     demand = Demand(
         table(pieces.start - lower, pieces.end - lower, domain.radius[pieces.fiber]),
         pieces.flat,
@@ -232,7 +237,7 @@ def _demand(domain: FluidDomain, settings: TetmeshSettings) -> "tuple[Demand, Gr
         allowed(wanted)[np.searchsorted(there, pieces.fiber)],
         settings.growth,
         largest,
-        0.5**_FINER,
+        0.5**finer,
     )
     return demand, cubes, largest
 
