@@ -9,6 +9,7 @@ FORMAL_ORDER = 2.0
 """Of the finite volumes that we write; second-order elements reach it or more, so it is on the safe side for them."""
 
 _LOWEST_ORDER = 0.5
+_HIGHEST_ORDER = 20.0  # no discretization has it
 _ASYMPTOTIC = 0.1  # relative distance of the observed from the formal order within which the mesh counts as fine
 _SAFETY, _CAUTIOUS_SAFETY = 1.25, 3.0
 _ROUNDS = 200
@@ -21,7 +22,7 @@ class Convergence:
     Parameters
     ----------
     order : float [-]
-        Observed order of convergence; nan where the answers swing about a value, which has no order.
+        Observed order of convergence; nan where the answers swing about a value, or meshes are too alike to tell one.
     extrapolated : float
         Richardson's estimate of the answer on an infinitely fine mesh.
     index : float [-]
@@ -82,7 +83,8 @@ def convergence(spacings: tuple[float, float, float], answers: tuple[float, floa
     swings = step_coarse / step_fine <= 0.0
     order = math.nan if swings else _observed_order(step_coarse / step_fine, ratio_fine, ratio_coarse)
     asymptotic = abs(order - FORMAL_ORDER) <= _ASYMPTOTIC * FORMAL_ORDER
-    safe_order = FORMAL_ORDER if asymptotic else min(max(_LOWEST_ORDER, 0.0 if swings else order), FORMAL_ORDER)
+    known = 0.0 if math.isnan(order) else order
+    safe_order = FORMAL_ORDER if asymptotic else min(max(_LOWEST_ORDER, known), FORMAL_ORDER)
     gain = ratio_fine**safe_order - 1.0
     factor = _SAFETY if asymptotic else _CAUTIOUS_SAFETY
     return Convergence(order, fine - step_fine / gain, factor * abs(step_fine / fine) / gain, asymptotic)
@@ -93,6 +95,9 @@ def _observed_order(change: float, ratio_fine: float, ratio_coarse: float) -> fl
     for _ in range(_ROUNDS):
         if order < 1e-6:
             break
+        if order > _HIGHEST_ORDER:
+            # two meshes so alike that hardly any power tells them apart
+            return math.nan
         shift = math.log((ratio_fine**order - 1.0) / (ratio_coarse**order - 1.0))
         order = 0.5 * (order + abs(math.log(change) + shift) / math.log(ratio_fine))
     return order

@@ -4,6 +4,7 @@
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -51,3 +52,17 @@ def test_equal_answers_leave_nothing_to_extrapolate() -> None:
 def test_spacings_that_do_not_fall_are_refused() -> None:
     with pytest.raises(ValueError, match="do not fall"):
         convergence((1.0, 2.0, 1.0), (1.0, 2.0, 3.0))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_whatever_three_meshes_gave_there_is_a_limit_and_an_index(seed: int) -> None:
+    # meshes that hardly differ in their spacing, and answers that hardly differ: no power tells these apart
+    rng = np.random.default_rng(seed)
+    fine = 0.1
+    middle = fine * (1.0 + 10.0 ** rng.uniform(-6, 0))
+    coarse = middle * (1.0 + 10.0 ** rng.uniform(-6, 0))
+    answers = 1.0 + 10.0 ** rng.uniform(-9, -1, 3) * rng.choice([-1.0, 1.0], 3)
+    found = convergence((coarse, middle, fine), (float(answers[0]), float(answers[1]), float(answers[2])))
+    assert math.isfinite(found.extrapolated)
+    assert 0.0 <= found.index < math.inf
+    assert math.isnan(found.order) or 0.0 <= found.order <= 20.0
