@@ -145,11 +145,14 @@ class SolvingCost:
         Threads, or processes, that shared the work.
     peak_memory : int [byte], optional
         Most that the process held; None where others solved.
+    kept_iterations: int
+        That were taken over from runs which were stopped.
     """
 
     seconds: float
     cores: int
     peak_memory: int | None = None
+    kept_iterations: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from pipeline.analytics.formulas.slip import knudsen, regime, slip_length
 from pipeline.analytics.measured_errors import mesh_error, seed_spread
 from pipeline.analytics.models.pressure_models import pressure_model
 from pipeline.line import store
-from pipeline.line.places import kept_folder
+from pipeline.line.places import kept_folder, remove
 from pipeline.machine import cores, peak_memory
 from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.domain import FluidDomain
@@ -23,7 +23,7 @@ from pipeline.nouns.flow import Settling, Solution, SolvingCost
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.surface import Surface
 from pipeline.openfoam.environment import SOLVER, openfoam_missing
-from pipeline.progress import Progress
+from pipeline.progress import NOTE, Progress
 from pipeline.solve.bed import Bed
 from pipeline.solve.paraview import write_paraview
 from pipeline.solve.regime import mach, refuse_regime, reynolds
@@ -77,10 +77,18 @@ def _by_elements(
     results: "Results", into: Path, bed: Bed, progress: Progress
 ) -> tuple[Solution, Settling, SolvingCost]:
     from pipeline.solve.stokes.flow_file import write_flow
+    from pipeline.solve.stokes.kept import KeptSolve
     from pipeline.solve.stokes.solver import solve_stokes
 
     began = time.monotonic()
     case, flow = results.case, results.case.flow.flow()
+    # beside the stage and not in it: a run that was stopped goes on from there, unless something changed
+    whole = kept_folder(results.folder, "solve")
+    place = whole / results.key[:16]
+    if whole.exists() and not place.exists():
+        progress(f"{NOTE}solve: what a stopped run kept is left: it is of another mesh, case or program")
+        remove(whole)
+    kept = KeptSolve(place, progress)
     solution, field, settled = solve_stokes(
         results.read(FaceMesh),
         results.read(FluidDomain),
@@ -92,11 +100,13 @@ def _by_elements(
         case.solve.stokes,
         progress,
         cores(),
+        kept,
     )
     store.save(field, into / "flow.npz")
     write_flow(field, flow.viscosity, into / "flow.vtu")
     write_paraview(into)
-    return solution, settled, SolvingCost(time.monotonic() - began, cores(), peak_memory())
+    seconds = kept.before + time.monotonic() - began
+    return solution, settled, SolvingCost(seconds, cores(), peak_memory(), kept.iterations)
 
 
 def _by_openfoam(

@@ -6,6 +6,7 @@ import numpy as np
 
 from pipeline.errors import StageError
 from pipeline.nouns.arrays import Floats
+from pipeline.solve.stokes.kept import KeptIterations, KeptSolve
 from pipeline.solve.stokes.krylov import gmres
 from pipeline.solve.stokes.system import DuctFlow, IterationProgress, System
 
@@ -14,7 +15,12 @@ _PATIENCE = 15
 
 
 def creep(
-    system: System, tolerance: float, most: int, progress: IterationProgress, start: DuctFlow | None = None
+    system: System,
+    tolerance: float,
+    most: int,
+    progress: IterationProgress,
+    start: DuctFlow | None = None,
+    memory: KeptIterations | None = None,
 ) -> DuctFlow:
     """Solve for the creeping flow through a duct.
 
@@ -30,6 +36,8 @@ def creep(
         Takes the iterations so far, the pressure drop and its relative change.
     start : DuctFlow, optional
         A flow through the same duct to start from.
+    memory : KeptIterations, optional
+        Of a run that may have been stopped.
 
     Returns
     -------
@@ -44,8 +52,8 @@ def creep(
     -----
     The error is known from the sharper drop of each iterate (Becker & Rannacher 2001).
     """
-    history: list[tuple[int, float]] = []
-    residuals: list[float] = []
+    memory = memory or KeptIterations(KeptSolve(), "")
+    history, residuals = memory.history, memory.residuals
     state: dict[str, float] = {"error": np.inf}
 
     def settled(iterations: int, x: Floats) -> bool:
@@ -63,5 +71,7 @@ def creep(
             )
         return state["error"] < tolerance and look.balanced
 
-    found, _, done = gmres(system.times, system.precondition, system.right, system.iterate(start), settled, most=most)
+    found, _, done = gmres(
+        system.times, system.precondition, system.right, system.iterate(start), settled, most=most, memory=memory
+    )
     return system.result(found, state["error"], tuple(history), done)

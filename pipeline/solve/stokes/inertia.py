@@ -7,6 +7,7 @@ import numpy as np
 from pipeline.errors import StageError
 from pipeline.nouns.arrays import Floats
 from pipeline.solve.stokes.convection import Convection
+from pipeline.solve.stokes.kept import KeptSolve
 from pipeline.solve.stokes.krylov import gmres
 from pipeline.solve.stokes.system import DuctFlow, IterationProgress, System
 
@@ -19,7 +20,14 @@ _SHORTER = 0.6
 
 
 def with_inertia(
-    system: System, reynolds: float, tolerance: float, most: int, progress: IterationProgress, start: DuctFlow
+    system: System,
+    reynolds: float,
+    tolerance: float,
+    most: int,
+    progress: IterationProgress,
+    start: DuctFlow,
+    kept: KeptSolve | None = None,
+    name: str = "flow",
 ) -> DuctFlow:
     """Solve for the steady flow of air that has inertia.
 
@@ -37,6 +45,10 @@ def with_inertia(
         Takes the iterations so far, the pressure drop and its relative change.
     start : DuctFlow
         The creeping flow.
+    kept : KeptSolve, optional
+        Of a run that may have been stopped.
+    name : str
+        Of this flow, in what is kept.
 
     Returns
     -------
@@ -50,8 +62,14 @@ def with_inertia(
     system.carry(Convection(system.duct, reynolds))
     x = system.iterate(start)
     look = system.look(x)
-    done, error, history = 0, np.inf, list(start.history)
-    for step in range(_STEPS):
+    done, error, history, first = 0, np.inf, list(start.history), 0
+    kept = kept or KeptSolve()
+    before = kept.read(f"{name}-step", x=x.shape, history=(-1, 2), step=(), done=())
+    if before is not None:
+        x, first, done = before["x"], int(before["step"]), int(before["done"])
+        history = [(int(at), float(drop)) for at, drop in before["history"]]
+        kept.took_over(name.replace("_", " "), done)
+    for step in range(first, _STEPS):
         rest = system.rest(x)
         system.linearize(x, both=step >= _PICARD)
         size = float(np.linalg.norm(rest))
@@ -74,6 +92,11 @@ def with_inertia(
             return system.result(x, error, tuple(history), True)
         if done >= most:
             return system.result(x, error, tuple(history), False)
+        if kept.due:
+            kept.write(
+                f"{name}-step", x=x, history=np.array(history, dtype=np.float64), step=np.array(step + 1.0),
+                done=np.array(float(done)),
+            )  # fmt: skip
     raise StageError(
         f"the flow with inertia does not settle (residual {look.size:.1e} after {done} iterations): it may have no "
         "steady state; lower flow.face_velocity, or refine the mesh behind the fibers with tetmesh.edge"

@@ -3,12 +3,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 from collections.abc import Callable
+from typing import Protocol
 
 import numpy as np
 
 from pipeline.nouns.arrays import Floats
 
 Linear = Callable[[Floats], Floats]
+
+
+class Memory(Protocol):
+    """What knows the iterations of a run that was stopped."""
+
+    def begin(self, start: Floats) -> tuple[Floats, int]:
+        """Give what to start from, and the iterations that led to it."""
+
+    def recall(self, basis: Floats, hessenberg: Floats) -> int:
+        """Put back what a round has of vectors and products, and give how many iterations they make."""
+
+    def keep(self, basis: Floats, hessenberg: Floats, count: int) -> None:
+        """Take note of the first iterations of a round."""
+
+    def again(self, found: Floats, done: int) -> None:
+        """Take note of the iterate that another round starts from."""
 
 
 def gmres(
@@ -20,6 +37,7 @@ def gmres(
     restart: int = 60,
     look_every: int = 6,
     most: int = 1000,
+    memory: Memory | None = None,
 ) -> tuple[Floats, int, bool]:
     """Solve a linear system until a function of the iterate says that it has settled.
 
@@ -35,6 +53,8 @@ def gmres(
     look_every : int
     most : int
         Iterations after which it is given up.
+    memory : Memory, optional
+        Of a run that may have been stopped: what it found comes out again.
 
     Returns
     -------
@@ -46,7 +66,7 @@ def gmres(
     -----
     Saad & Schultz 1986. The basis is made orthogonal by classical Gram-Schmidt, two products with all of it at once.
     """
-    found, done = start.copy(), 0
+    found, done = (start.copy(), 0) if memory is None else memory.begin(start)
     basis = np.empty((restart + 1, len(right)))
     while True:
         rest = right - matrix(found)
@@ -55,16 +75,20 @@ def gmres(
             return found, done, settled(done, found)
         basis[0] = rest / size
         hessenberg = np.zeros((restart + 1, restart))
+        known = 0 if memory is None else memory.recall(basis, hessenberg)
         for k in range(restart):
-            following = matrix(preconditioner(basis[k]))
-            along = basis[: k + 1] @ following
-            following -= along @ basis[: k + 1]
-            hessenberg[: k + 1, k] = along
-            hessenberg[k + 1, k] = np.linalg.norm(following)
+            if k >= known:
+                following = matrix(preconditioner(basis[k]))
+                along = basis[: k + 1] @ following
+                following -= along @ basis[: k + 1]
+                hessenberg[: k + 1, k] = along
+                hessenberg[k + 1, k] = np.linalg.norm(following)
             done += 1
             last = k + 1 == restart or done == most or hessenberg[k + 1, k] == 0.0
-            if not last:
+            if not last and k >= known:
                 basis[k + 1] = following / hessenberg[k + 1, k]
+                if memory is not None:
+                    memory.keep(basis, hessenberg, k + 1)
             if last or done % look_every == 0:
                 target = np.zeros(k + 2)
                 target[0] = size
@@ -76,4 +100,6 @@ def gmres(
                     return now, done, False
                 if last:
                     found = now
+                    if memory is not None:
+                        memory.again(found, done)
                     break

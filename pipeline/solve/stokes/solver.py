@@ -24,8 +24,9 @@ from pipeline.solve.settings import StokesSettings
 from pipeline.solve.stokes.creeping import creep
 from pipeline.solve.stokes.duct import Duct
 from pipeline.solve.stokes.inertia import with_inertia
+from pipeline.solve.stokes.kept import KeptIterations, KeptSolve, keep_flow, kept_flow
 from pipeline.solve.stokes.passage import refuse_blocked
-from pipeline.solve.stokes.sharing import team
+from pipeline.solve.stokes.sharing import Team, team
 from pipeline.solve.stokes.system import DuctFlow, IterationProgress, System
 
 CREEPING_REYNOLDS = 0.1
@@ -47,6 +48,7 @@ def solve_stokes(
     settings: StokesSettings,
     progress: Progress,
     cores: int = 1,
+    kept: KeptSolve | None = None,
 ) -> tuple[Solution, FlowField, Settling]:
     """Solve for the steady flow through a meshed duct, with the wall that the case has and with the other one.
 
@@ -67,6 +69,8 @@ def solve_stokes(
         Told the iteration, the pressure drop and its error.
     cores : int
         That share the work; what is found does not depend on it.
+    kept : KeptSolve, optional
+        What a run of the same flow left that was stopped, and where this one leaves its own.
 
     Returns
     -------
@@ -97,8 +101,8 @@ def solve_stokes(
             told = _telling(wall.replace("_", " "), scale, settings.tolerance, progress)
             # on its own: what one wall took is let go before the other is solved
             creeping[wall], after = _solved(
-                System(duct, length / unit if wall == "slip" else 0.0, threads),
-                number, settings, told, creeping.get("no_slip"),
+                duct, length / unit if wall == "slip" else 0.0, threads, number, settings, told,
+                creeping.get("no_slip"), kept or KeptSolve(), wall,
             )  # fmt: skip
             if after is not None:
                 carried[wall] = after
@@ -126,14 +130,33 @@ def _telling(way: str, scale: float, tolerance: float, progress: Progress) -> It
 
 
 def _solved(
-    system: System, number: float, settings: StokesSettings, told: IterationProgress, start: DuctFlow | None
+    duct: Duct,
+    slip_length: float,
+    threads: Team,
+    number: float,
+    settings: StokesSettings,
+    told: IterationProgress,
+    start: DuctFlow | None,
+    kept: KeptSolve,
+    wall: str,
 ) -> tuple[DuctFlow, DuctFlow | None]:
-    """Solve for the creeping flow, and for the one with inertia where that counts."""
+    """Solve for the creeping flow, and for the one with inertia where that counts; what is kept is not solved again."""
     limits = settings.tolerance, settings.max_iterations, told
-    creeping = creep(system, *limits, start)
+    size = duct.matrices.unknowns, duct.matrices.vertices
+    system: System | None = None
+    creeping = kept_flow(kept, wall, *size)
+    if creeping is None:
+        system = System(duct, slip_length, threads)
+        creeping = creep(system, *limits, start, KeptIterations(kept, wall))
+        keep_flow(kept, wall, creeping)
     if number <= CREEPING_REYNOLDS or not creeping.settled:
         return creeping, None
-    return creeping, with_inertia(system, number, *limits, creeping)
+    name = f"{wall}_with_inertia"
+    carried = kept_flow(kept, name, *size)
+    if carried is None:
+        carried = with_inertia(system or System(duct, slip_length, threads), number, *limits, creeping, kept, name)
+        keep_flow(kept, name, carried)
+    return creeping, carried
 
 
 def _solution(
