@@ -5,6 +5,7 @@
 from typing import Any
 
 from pipeline.export.formats.registry import held
+from pipeline.export.formats.vtk_index import INDEX
 from pipeline.export.settings import ExportSettings
 from pipeline.line.stage import Entry, Stage
 from pipeline.nouns.domain import FluidDomain
@@ -30,4 +31,7 @@ EXPORT = Stage(
     gives={OpenFoamCase: "openfoam"},
     settings=ExportSettings,
     reads=("flow", "enclosure", "tetmesh"),
+    # the index of VTK's files names the flow, which comes later
+    records=(f"vtk/{INDEX}",),
+    after=Entry("pipeline.export.index:name_flow"),
 )

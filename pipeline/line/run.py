@@ -147,6 +147,10 @@ def run(
         store.write_json(folder / CASE, case.content())
         for stage in stages:
             outcomes.append(_step(stage, case, folder, stage.name in force, progress))
+        for stage in stages:
+            if stage.after is not None and read_manifest(folder / stage.name) is not None:
+                with places.disk_trouble_explained(folder / stage.name):
+                    stage.after(Run.of_case(case, folder))
     return outcomes
 
 

@@ -99,6 +99,9 @@ class Stage:
         ``section(results) -> Section | None``: what the report shows of it.
     estimate : Entry, optional
         ``estimate(case) -> Estimate``: what the stage will take.
+    after : Entry, optional
+        ``after(results) -> None``: called at the end of every run that the stage is part of, whether it was made or
+        reused, to bring its records up to date with what came behind it.
     """
 
     name: str
@@ -119,6 +122,7 @@ class Stage:
     tables: Entry | None = None
     section: Entry | None = None
     estimate: Entry | None = None
+    after: Entry | None = None
 
 
 def needing(*nouns: type) -> Callable[[Any], tuple[type, ...]]:

@@ -8,6 +8,8 @@ import numpy as np
 
 from pipeline.nouns.arrays import Bools, Floats, Ints, all_within, freeze, require
 
+FLOW_FILE = "flow.vtu"
+"""File beside a flow's own that viewers open."""
 EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]])
 """Local vertices of a tetrahedron's edges, in the order of its last six nodes, which is VTK's."""
 

@@ -20,6 +20,7 @@ from pipeline.nouns.comparison import Comparison
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.exports import OpenFoamCase
 from pipeline.nouns.flow import Settling, Solution, SolvingCost
+from pipeline.nouns.flow_field import FLOW_FILE
 from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.surface import Surface
 from pipeline.openfoam.environment import SOLVER, openfoam_missing
@@ -103,7 +104,7 @@ def _by_elements(
         kept,
     )
     store.save(field, into / "flow.npz")
-    write_flow(field, flow.viscosity, into / "flow.vtu")
+    write_flow(field, flow.viscosity, into / FLOW_FILE)
     write_paraview(into)
     seconds = kept.before + time.monotonic() - began
     return solution, settled, SolvingCost(seconds, cores(), peak_memory(), kept.iterations)

@@ -5,23 +5,21 @@
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 import numpy.typing as npt
 
 from pipeline.export.formats.format import Format
 from pipeline.export.formats.read_vtk import read_vtk
+from pipeline.export.formats.vtk_index import BOUNDARY, INDEX, VOLUME, format_vtm
 from pipeline.geometry.faces import compacted
 from pipeline.nouns.arrays import Floats, Ints
-from pipeline.nouns.mesh import FaceMesh, Patch
+from pipeline.nouns.mesh import FaceMesh
 from pipeline.nouns.patches import FIBERS
 from pipeline.progress import Progress, silent
 
 if TYPE_CHECKING:
     import pyvista as pv
-
-VOLUME = "internal.vtu"
 
 
 def write_vtk(mesh: FaceMesh, folder: Path, fields: Mapping[str, Floats], progress: Progress = silent) -> None:
@@ -41,7 +39,7 @@ def write_vtk(mesh: FaceMesh, folder: Path, fields: Mapping[str, Floats], progre
     """
     progress("export: VTK")
     grid = volume_grid(mesh)
-    (folder / "boundary").mkdir(parents=True, exist_ok=True)
+    (folder / BOUNDARY).mkdir(parents=True, exist_ok=True)
     for name, values in fields.items():
         grid.cell_data[name] = values
     grid.save(folder / VOLUME)
@@ -50,8 +48,8 @@ def write_vtk(mesh: FaceMesh, folder: Path, fields: Mapping[str, Floats], progre
         surface.cell_data["owner"] = mesh.owner[patch.start : patch.start + patch.count]
         if patch.name == FIBERS and len(mesh.fiber):
             surface.cell_data["fiber"] = mesh.fiber
-        surface.save(folder / "boundary" / f"{patch.name}.vtp")
-    (folder / "mesh.vtm").write_text(format_vtm(mesh.patches), encoding="utf-8")
+        surface.save(folder / BOUNDARY / f"{patch.name}.vtp")
+    (folder / INDEX).write_text(format_vtm(patch.name for patch in mesh.patches), encoding="utf-8")
 
 
 def volume_grid(
@@ -128,40 +126,6 @@ def patch_surface(mesh: FaceMesh, name: str, scale: float = 1.0) -> "pv.PolyData
     points, corners = compacted(mesh.points, mesh.corners[offsets[0] : offsets[-1]])
     # VTK wants the number of corners before those of each face
     return pv.PolyData(points * scale, faces=np.insert(corners, offsets[:-1] - offsets[0], np.diff(offsets)))
-
-
-def format_vtm(patches: tuple[Patch, ...]) -> str:
-    """Index of the files, in the layout of OpenFOAM's `foamToVTK`: `internal`, and `boundary` with a block per patch.
-
-    Examples
-    --------
-    >>> print(format_vtm((Patch("inlet", 0, 1),)))
-    <?xml version="1.0"?>
-    <!-- the flow of a run that is solved: ../../solve/flow.vtu; ../../solve/open_in_paraview.py shows both -->
-    <VTKFile type="vtkMultiBlockDataSet" version="1.0" byte_order="LittleEndian">
-      <vtkMultiBlockDataSet>
-        <DataSet index="0" name="internal" file="internal.vtu"/>
-        <Block index="1" name="boundary">
-          <DataSet index="0" name="inlet" file="boundary/inlet.vtp"/>
-        </Block>
-      </vtkMultiBlockDataSet>
-    </VTKFile>
-    <BLANKLINE>
-    """
-    blocks = "".join(
-        f"      <DataSet index={quoteattr(str(k))} name={quoteattr(patch.name)} "
-        f"file={quoteattr(f'boundary/{patch.name}.vtp')}/>\n"
-        for k, patch in enumerate(patches)
-    )
-    return (
-        '<?xml version="1.0"?>\n'
-        "<!-- the flow of a run that is solved: ../../solve/flow.vtu; ../../solve/open_in_paraview.py shows both -->\n"
-        '<VTKFile type="vtkMultiBlockDataSet" version="1.0" byte_order="LittleEndian">\n'
-        "  <vtkMultiBlockDataSet>\n"
-        f'    <DataSet index="0" name="internal" file="{VOLUME}"/>\n'
-        f'    <Block index="1" name="boundary">\n{blocks}    </Block>\n'
-        "  </vtkMultiBlockDataSet>\n</VTKFile>\n"
-    )
 
 
 FORMAT = Format(

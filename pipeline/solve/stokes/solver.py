@@ -124,7 +124,7 @@ def _telling(way: str, scale: float, tolerance: float, progress: Progress) -> It
         # an error that falls from 1 to the tolerance, in even steps on a logarithmic scale
         share = math.log(min(max(error, tolerance), 1.0)) / math.log(tolerance)
         known = f", changed by {100 * error:.2g} %" if math.isfinite(error) else ""
-        progress(f"solve: {way}, iteration {iterations}, pressure drop {drop * scale:.5g} Pa{known}", max(share, 0.0))
+        progress(f"solve: {way}, iteration {iterations}, pressure drop {drop * scale:.5g} Pa{known}", max(0.0, share))
 
     return told
 
