@@ -22,15 +22,17 @@ import os
 import sys
 
 from paraview.simple import (
-    ColorBy, GetActiveViewOrCreate, Plane, Render, ResetCamera, SaveScreenshot, Show, Slice,
-    StreamTracerWithCustomSource, Tube, XMLPolyDataReader, XMLUnstructuredGridReader,
+    ColorBy, GetActiveViewOrCreate, GetColorTransferFunction, GetScalarBar, LoadPalette, Plane, Render, ResetCamera,
+    SaveScreenshot, Show, Slice, StreamTracerWithCustomSource, Tube, XMLPolyDataReader, XMLUnstructuredGridReader,
 )
 
 # ParaView itself does not say where a script lies when it is pasted into its shell
 here = os.path.dirname(os.path.abspath(globals().get("__file__", os.path.join("solve", "open_in_paraview.py"))))
-SEEDS = 12  # streamlines along each side of the inlet
+SEEDS = 8  # streamlines along each side of the inlet
 
+LoadPalette("WhiteBackground")
 view = GetActiveViewOrCreate("RenderView")
+view.ViewSize = [1200, 900]
 flow = XMLUnstructuredGridReader(FileName=[os.path.join(here, "flow.vtu")])
 flow.UpdatePipeline()
 x0, x1, y0, y1, z0, z1 = flow.GetDataInformation().GetBounds()
@@ -49,6 +51,9 @@ def colored(source, *by):
     ColorBy(shown, ("POINTS",) + by)
     shown.RescaleTransferFunctionToDataRange(True)
     shown.SetScalarBarVisibility(view, True)
+    bar = GetScalarBar(GetColorTransferFunction(by[0]), view)
+    bar.Title = {"velocity": "speed [m/s]", "pressure": "pressure [Pa]"}[by[0]]
+    bar.ComponentTitle = ""
 
 
 colored(plane([1.0, 0.0, 0.0]), "velocity", "Magnitude")
@@ -75,8 +80,9 @@ colored(tubes, "velocity", "Magnitude")
 fibers = os.path.join(here, "..", "export", "vtk", "boundary", "fibers.vtp")
 if os.path.exists(fibers):
     shown = Show(XMLPolyDataReader(FileName=[fibers]), view)
-    shown.DiffuseColor = [0.8, 0.8, 0.8]
-    shown.Opacity = 0.35
+    # not by a field of its own, as ParaView would
+    ColorBy(shown, None)
+    shown.AmbientColor = shown.DiffuseColor = [0.75, 0.75, 0.7]
 
 view.CameraPosition = [middle[0] + 2.5 * (z1 - z0), middle[1] + 1.5 * (z1 - z0), middle[2] + 0.5 * (z1 - z0)]
 view.CameraFocalPoint = middle

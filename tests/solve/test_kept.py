@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -211,42 +212,51 @@ def test_where_nothing_can_be_written_the_flow_is_solved_all_the_same(tmp_path: 
     assert sum("nothing is kept to go on from" in words for words in said) == 1
 
 
-WITHOUT_WAITING = """
+CHILD = """
+import sys
+from pathlib import Path
 import pipeline.solve.stokes.kept as kept
+from pipeline.case import read_case
+from pipeline.line.run import run
 kept.EVERY = 0.0
-from pipeline.cli.entry import main
-main()
+case = read_case(Path("case.toml"), ("tetmesh.engine=lattice",))
+unread = frozenset({"quality", "export", "report"})
+run(case, Path(sys.argv[1]), sys.argv[2], without=unread, progress=lambda what, done=None: print(what, flush=True))
 """
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(900)
 def test_a_killed_process_goes_on_and_says_so(tmp_path: Path) -> None:
     (tmp_path / "case.toml").write_text(CASE)
 
-    def started(name: str, *options: str) -> "subprocess.Popen[str]":
-        command = ["run", "case.toml", "--until", "solve", "--set", "tetmesh.engine=lattice", "--out", name, *options]
+    def started(run: Path, until: str) -> "subprocess.Popen[str]":
         return subprocess.Popen(
-            [sys.executable, "-c", WITHOUT_WAITING, *command], cwd=tmp_path, stdout=subprocess.PIPE, text=True,
+            [sys.executable, "-c", CHILD, str(run), until], cwd=tmp_path, stdout=subprocess.PIPE, text=True,
             stderr=subprocess.STDOUT,
         )  # fmt: skip
 
-    said, _ = (whole := started("whole")).communicate()
-    assert whole.returncode == 0, said
+    def ended(child: "subprocess.Popen[str]") -> str:
+        said, _ = child.communicate()
+        assert child.returncode == 0, said
+        return said
+
+    ended(started(tmp_path / "meshed", "compare"))
+    shutil.copytree(tmp_path / "meshed", tmp_path / "whole")
+    ended(started(tmp_path / "whole", "solve"))
     draw = random.Random(5)
     for number in range(2):
         run = tmp_path / f"run{number}"
-        before = started(run.name)
-        wanted = draw.randrange(1, 40)
+        shutil.copytree(tmp_path / "meshed", run)
+        before, wanted = started(run, "solve"), draw.randrange(1, 40)
         while before.poll() is None and len(list(run.glob(".solve.kept/*/*.npz"))) < wanted:
             time.sleep(0.005)
         before.send_signal(signal.SIGKILL)
         before.communicate()
         there = list(run.glob(".solve.kept/*/*.npz"))
-        said, _ = (after := started(run.name)).communicate()
-        assert after.returncode == 0, said
-        cost = read_json(run / "solve" / "cost.json")
+        said = ended(started(run, "solve"))
         assert there
-        assert cost["kept_iterations"] > 0
+        assert read_json(run / "solve" / "cost.json")["kept_iterations"] > 0
         assert "iterations are those of a run that was stopped" in said
         for file in ("solution.json", "flow.npz", "settling.json"):
             assert (run / "solve" / file).read_bytes() == (tmp_path / "whole" / "solve" / file).read_bytes()

@@ -15,7 +15,9 @@ import pyvista as pv
 from pipeline.solve.paraview import SCRIPT, write_paraview
 
 DOCUMENTED = {
-    "GetActiveViewOrCreate": {"CameraPosition", "CameraFocalPoint", "CameraViewUp"},
+    "GetActiveViewOrCreate": {"CameraPosition", "CameraFocalPoint", "CameraViewUp", "ViewSize"},
+    "GetColorTransferFunction": set(),
+    "GetScalarBar": {"Title", "ComponentTitle"},
     "XMLUnstructuredGridReader": {"FileName"},
     "XMLPolyDataReader": {"FileName"},
     "Slice": {"Input", "SliceType"},
@@ -24,10 +26,10 @@ DOCUMENTED = {
         "Input", "SeedSource", "Vectors", "IntegrationDirection", "MaximumStreamlineLength",
     },
     "Tube": {"Input", "Radius"},
-    "Show": {"DiffuseColor", "Opacity"},
+    "Show": {"AmbientColor", "DiffuseColor"},
     "SaveScreenshot": {"ImageResolution"},
 }  # fmt: skip
-"""Properties by what has them, from the reference of paraview.simple 5.9 to 5.13."""
+"""Properties by what has them, from the reference of paraview.simple 5.9 to 5.13; 5.11 has run the script."""
 
 
 class Proxy:
@@ -83,7 +85,7 @@ def test_the_script_asks_only_for_what_paraview_documents(
     exported: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     made: list[Proxy] = []
-    colored: list[tuple[str, ...]] = []
+    colored: list[tuple[str, ...] | None] = []
     saved: list[str] = []
 
     def maker(kind: str) -> Any:
@@ -96,6 +98,7 @@ def test_the_script_asks_only_for_what_paraview_documents(
     simple = types.ModuleType("paraview.simple")
     for kind in DOCUMENTED.keys() - {"SaveScreenshot"}:
         setattr(simple, kind, maker(kind))
+    simple.LoadPalette = lambda name: None  # type: ignore[attr-defined]
     simple.ColorBy = lambda shown, by: colored.append(by)  # type: ignore[attr-defined]
     simple.Render = simple.ResetCamera = lambda view: None  # type: ignore[attr-defined]
     simple.SaveScreenshot = lambda name, view, ImageResolution: saved.append(name)  # type: ignore[attr-defined]  # noqa: N803
@@ -104,8 +107,9 @@ def test_the_script_asks_only_for_what_paraview_documents(
     script = folder_of_a_run(tmp_path, exported) / SCRIPT
     monkeypatch.setattr(sys, "argv", [str(script), "flow.png"])
     runpy.run_path(str(script))
-    # speed and pressure on planes, and the streamlines by their speed
-    assert colored == [("POINTS", "velocity", "Magnitude"), ("POINTS", "pressure"), ("POINTS", "velocity", "Magnitude")]
+    # speed and pressure on planes, and the streamlines by their speed; the fibers by nothing
+    by_speed, by_pressure = ("POINTS", "velocity", "Magnitude"), ("POINTS", "pressure")
+    assert colored == [by_speed, by_pressure, by_speed, *([None] if exported else [])]
     assert saved == ["flow.png"]
     assert any(proxy.kind == "XMLPolyDataReader" for proxy in made) == exported
     seeds = [proxy for proxy in made if proxy.kind == "Plane"]
