@@ -39,6 +39,8 @@ MESHES = (
     ("lattice", 0.4, 1.0, True),
     ("snappy", 0.6, 1.0, True),
     ("snappy", 0.4, 1.0, True),
+    ("snappy", 0.3, 1.0, True),
+    ("snappy", 0.2, 1.0, True),
 )
 """Mesher, edge in fiber diameters, growth, and whether finite volumes are solved on it too."""
 FINE_ENOUGH = 0.4

@@ -216,7 +216,8 @@ def needed_edge(mesher: str, solver: str, error: float, known: Sequence[EdgeErro
     Returns
     -------
     Need or None
-        None where fewer than two edges were measured, or the error does not fall with them in first order.
+        The coarsest edge that was measured, at most. None where fewer than two edges were measured, or where none of
+        them gave the error and it does not fall with them in first order.
 
     Examples
     --------
@@ -236,11 +237,16 @@ def needed_edge(mesher: str, solver: str, error: float, known: Sequence[EdgeErro
         for values in ([abs(r.mean) for r in rows], [r.cells for r in rows], [r.seconds for r in rows])
     )
     if power < _LEAST_ORDER:
-        return None
-    edge = (error / scale) ** (1.0 / power)
+        enough = [each.edge for each in rows if abs(each.mean) <= error]
+        if not enough:
+            return None
+        edge = max(enough)
+    else:
+        # what coarser meshes than those measured leave is nobody's to tell
+        edge = min((error / scale) ** (1.0 / power), max(edges))
     at = [each[0] * edge ** each[1] for each in (cells, seconds)]
     growth = edge / _USUAL if rows == graded else 1.0
-    return Need(error, edge, at[0], at[1], growth, min(edges) <= edge <= max(edges))
+    return Need(error, edge, at[0], at[1], growth, min(edges) <= edge)
 
 
 def _power(edges: Sequence[float], values: Sequence[float]) -> tuple[float, float]:

@@ -48,6 +48,14 @@ def test_an_error_that_does_not_fall_with_the_edge_needs_no_edge() -> None:
     assert needed_edge("lattice", "openfoam", 0.01, rows(order=0.5)) is None
 
 
+def test_no_edge_is_asked_for_that_is_coarser_than_what_was_measured() -> None:
+    # 20 % would be met at an edge of 1.4; one that hardly falls is met by what was measured, or by nothing
+    for order in (2.0, 0.5):
+        need = needed_edge("lattice", "openfoam", 0.2, rows(order=order))
+        assert need is not None
+        assert (need.edge, need.measured) == (1.0, True)
+
+
 @pytest.mark.parametrize(("mesher", "edge"), [("lattice", 0.39), ("lattice", 1.01), ("tetwild", 0.6)])
 def test_outside_what_was_measured_nothing_is_said(mesher: str, edge: float) -> None:
     assert mesh_error(mesher, "openfoam", edge, known=rows()) is None
