@@ -19,7 +19,7 @@ from tests.solve.rows import rows
 
 
 def test_three_threads_find_what_one_does_to_the_last_digits(monkeypatch: pytest.MonkeyPatch) -> None:
-    # rows are cut into the same shares whoever does them; only sums over all unknowns may be added in another order
+    # rows are cut into the same shares whoever does them; only norms are left to libraries with threads of their own
     monkeypatch.setattr(sharing, "_MANY", 1)
     mesh, domain = rows(0.1, around=4, outward=3)
     faces = mesh.face_mesh()
@@ -33,6 +33,25 @@ def test_three_threads_find_what_one_does_to_the_last_digits(monkeypatch: pytest
     assert found[0].iterations == found[1].iterations
     assert found[0].pressure_drop == pytest.approx(found[1].pressure_drop, rel=1e-10)
     assert found[0].drag_per_fiber == pytest.approx(found[1].drag_per_fiber, rel=1e-10)
+
+
+@pytest.mark.parametrize("size", [1, 7, 5000, 40_000])
+def test_sums_over_all_rows_are_the_same_for_any_threads(size: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sharing, "_MANY", 1)
+    draw = np.random.default_rng(size)
+    basis, x = draw.normal(size=(7, size)), draw.normal(size=size)
+    weights = draw.normal(size=6)
+    found = []
+    for cores in (1, 3):
+        with team(cores) as threads:
+            added = x.copy()
+            threads.over(0, size, sweeps.add_weighted, basis, weights, added)
+            found.append((threads.sums(size, sweeps.products, 6, basis, 6, x), added))
+    assert np.array_equal(found[0][0], found[1][0])
+    assert np.array_equal(found[0][1], found[1][1])
+    exact = basis[:6]
+    assert found[0][0] == pytest.approx(exact @ x, rel=0, abs=1e-12 * size)
+    assert found[0][1] == pytest.approx(x + weights @ exact, rel=0, abs=1e-13)
 
 
 def test_every_row_is_in_one_share(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -72,6 +72,13 @@ def creep(
         return state["error"] < tolerance and look.balanced
 
     found, _, done = gmres(
-        system.times, system.precondition, system.right, system.iterate(start), settled, most=most, memory=memory
+        system.times,
+        system.precondition,
+        system.right,
+        system.iterate(start),
+        settled,
+        most=most,
+        memory=memory,
+        team=system.team,
     )
     return system.result(found, state["error"], tuple(history), done)

@@ -257,6 +257,8 @@ class Matrices:
         Rows by vertex, columns by node, (k, 3) values: minus the divergence against the pressure's functions.
     grad_start, grad_row, grad_place : arrays
         The divergence's pattern by column: rows by node, their vertices, and the places of their entries in `div`.
+    grad : (k, 3) array
+        The divergence's values in that order, as they are read one behind the other.
     vertex_start, vertex_column, mass, linear : arrays
         Of the pressure's mass and of the stiffness of linear elements.
     """
@@ -272,6 +274,7 @@ class Matrices:
     grad_start: Ints
     grad_row: Indices
     grad_place: Indices
+    grad: Floats
     vertex_start: Ints
     vertex_column: Indices
     mass: Floats
@@ -310,9 +313,10 @@ def assemble(positions: Floats, cells: Ints, unknown: Ints, curved: npt.NDArray[
             start, column, stiff, div_start, div_column, div, mass, vertex_start, vertex_column,
         )  # fmt: skip
     _add_straight(positions, cells, numbers, vertex_start, vertex_column, linear)
+    grad_start, grad_row, grad_place = _transposed(div_start, div_column, unknowns)
     return Matrices(
-        unknowns, vertices, start, column, stiff, div_start, div_column, div,
-        *_transposed(div_start, div_column, unknowns), vertex_start, vertex_column, mass, linear,
+        unknowns, vertices, start, column, stiff, div_start, div_column, div, grad_start, grad_row, grad_place,
+        div[grad_place], vertex_start, vertex_column, mass, linear,
     )  # fmt: skip
 
 

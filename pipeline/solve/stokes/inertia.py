@@ -78,7 +78,13 @@ def with_inertia(
             return float(np.linalg.norm(rest - system.times(change))) < _EXACT * size
 
         change, used, _ = gmres(
-            system.times, system.precondition, rest, np.zeros_like(x), close, most=max(most - done, 1)
+            system.times,
+            system.precondition,
+            rest,
+            np.zeros_like(x),
+            close,
+            most=max(most - done, 1),
+            team=system.team,
         )
         share = 1.0
         while share > _SHORTEST and float(np.linalg.norm(system.rest(x + share * change))) > size:

@@ -8,6 +8,8 @@ from typing import Protocol
 import numpy as np
 
 from pipeline.nouns.arrays import Floats
+from pipeline.solve.stokes import sweeps
+from pipeline.solve.stokes.sharing import Team
 
 Linear = Callable[[Floats], Floats]
 
@@ -38,6 +40,7 @@ def gmres(
     look_every: int = 6,
     most: int = 1000,
     memory: Memory | None = None,
+    team: Team | None = None,
 ) -> tuple[Floats, int, bool]:
     """Solve a linear system until a function of the iterate says that it has settled.
 
@@ -55,6 +58,8 @@ def gmres(
         Iterations after which it is given up.
     memory : Memory, optional
         Of a run that may have been stopped: what it found comes out again.
+    team : Team, optional
+        Who shares the work; one core does all where there is none.
 
     Returns
     -------
@@ -65,9 +70,11 @@ def gmres(
     Notes
     -----
     Saad & Schultz 1986. The basis is made orthogonal by classical Gram-Schmidt, two products with all of it at once.
+    Their sums are added up share by share, so that they do not depend on who adds them.
     """
     found, done = (start.copy(), 0) if memory is None else memory.begin(start)
     basis = np.empty((restart + 1, len(right)))
+    share, rows = team or Team(), len(right)
     while True:
         rest = right - matrix(found)
         size = float(np.linalg.norm(rest))
@@ -79,8 +86,8 @@ def gmres(
         for k in range(restart):
             if k >= known:
                 following = matrix(preconditioner(basis[k]))
-                along = basis[: k + 1] @ following
-                following -= along @ basis[: k + 1]
+                along = share.sums(rows, sweeps.products, k + 1, basis, k + 1, following)
+                share.over(0, rows, sweeps.add_weighted, basis, -along, following)
                 hessenberg[: k + 1, k] = along
                 hessenberg[k + 1, k] = np.linalg.norm(following)
             done += 1
@@ -93,7 +100,9 @@ def gmres(
                 target = np.zeros(k + 2)
                 target[0] = size
                 weights = np.linalg.lstsq(hessenberg[: k + 2, : k + 1], target, rcond=None)[0]
-                now = found + preconditioner(weights @ basis[: k + 1])
+                step = np.zeros(rows)
+                share.over(0, rows, sweeps.add_weighted, basis, weights, step)
+                now = found + preconditioner(step)
                 if settled(done, now):
                     return now, done, True
                 if done == most:

@@ -8,6 +8,10 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import Any
 
+import numpy as np
+
+from pipeline.nouns.arrays import Floats
+
 SHARES = 8
 """Parts that rows are cut into, on any number of cores."""
 _MANY = 20_000  # rows from which it pays to wake threads
@@ -30,14 +34,27 @@ class Team:
 
     def over(self, first: int, end: int, loop: Loop, *arguments: Any) -> None:
         """Run a loop over the rows from `first` to before `end`, part by part."""
-        cuts = [first + (end - first) * k // SHARES for k in range(SHARES + 1)]
-        parts = list(itertools.pairwise(cuts))
-        if self.pool is None or end - first < _MANY:
-            for part in parts:
-                loop(*part, *arguments)
+        self._each([(loop, *part, *arguments) for part in _parts(first, end)], end - first)
+
+    def sums(self, end: int, loop: Loop, count: int, *arguments: Any) -> Floats:
+        """Run a loop over the rows up to `end` that adds up `count` sums, its last argument: those of all rows."""
+        found = np.zeros((SHARES, count))
+        self._each([(loop, *part, *arguments, found[k]) for k, part in enumerate(_parts(0, end))], end)
+        total: Floats = found.sum(axis=0)
+        return total
+
+    def _each(self, calls: list[tuple[Any, ...]], rows: int) -> None:
+        if self.pool is None or rows < _MANY:
+            for loop, *arguments in calls:
+                loop(*arguments)
             return
-        for done in [self.pool.submit(loop, *part, *arguments) for part in parts]:
+        for done in [self.pool.submit(*call) for call in calls]:
             done.result()
+
+
+def _parts(first: int, end: int) -> list[tuple[int, int]]:
+    cuts = [first + (end - first) * k // SHARES for k in range(SHARES + 1)]
+    return list(itertools.pairwise(cuts))
 
 
 @contextmanager

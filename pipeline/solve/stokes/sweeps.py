@@ -15,6 +15,7 @@ Indices = npt.NDArray[np.int32]
 Flags = npt.NDArray[np.uint8]
 Blocks = npt.NDArray[np.float32]
 Values = Floats | Blocks
+_STRETCH = 2048  # entries of a vector that stay near the processor while others pass by
 
 
 @compiled_for_threads
@@ -58,20 +59,54 @@ def divergence(first: int, end: int, start: Ints, column: Indices, values: Float
 
 
 @compiled_for_threads
-def add_gradient(
-    first: int, end: int, start: Ints, row_of: Indices, place_of: Indices, values: Floats, p: Floats, y: Floats
-) -> None:
-    """Add the transposed of `divergence`'s matrix times p to y; its rows name the places of their entries there."""
+def add_gradient(first: int, end: int, start: Ints, row_of: Indices, values: Floats, p: Floats, y: Floats) -> None:
+    """Add the transposed of `divergence`'s matrix, (k, 3) entries by its own rows, times p to y."""
     for row in range(first, end):
         a, b, c = 0.0, 0.0, 0.0
-        for k in range(start[row], start[row + 1]):
-            place, value = place_of[k], p[row_of[k]]
+        for place in range(start[row], start[row + 1]):
+            value = p[row_of[place]]
             a += values[place, 0] * value
             b += values[place, 1] * value
             c += values[place, 2] * value
         y[row, 0] += a
         y[row, 1] += b
         y[row, 2] += c
+
+
+@compiled_for_threads
+def products(first: int, end: int, basis: Floats, count: int, x: Floats, into: Floats) -> None:
+    """Products of a share of a vector with that of each of `count` others."""
+    for low in range(first, end, _STRETCH):
+        high = min(low + _STRETCH, end)
+        # four at a time: x is read once for them, and no sum waits for another
+        for k in range(0, count - count % 4, 4):
+            a, b, c, d = 0.0, 0.0, 0.0, 0.0
+            for row in range(low, high):
+                value = x[row]
+                a += basis[k, row] * value
+                b += basis[k + 1, row] * value
+                c += basis[k + 2, row] * value
+                d += basis[k + 3, row] * value
+            into[k] += a
+            into[k + 1] += b
+            into[k + 2] += c
+            into[k + 3] += d
+        for k in range(count - count % 4, count):
+            a = 0.0
+            for row in range(low, high):
+                a += basis[k, row] * x[row]
+            into[k] += a
+
+
+@compiled_for_threads
+def add_weighted(first: int, end: int, basis: Floats, weights: Floats, x: Floats) -> None:
+    """Add a share of vectors, each times its weight, to that of x."""
+    for low in range(first, end, _STRETCH):
+        high = min(low + _STRETCH, end)
+        for k in range(len(weights)):
+            weight = weights[k]
+            for row in range(low, high):
+                x[row] += weight * basis[k, row]
 
 
 @compiled_for_threads

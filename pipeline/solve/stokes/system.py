@@ -102,9 +102,10 @@ class System:
     def __init__(self, duct: Duct, slip_length: float, team: Team | None = None) -> None:
         self.duct, self.matrices, self.team = duct, duct.matrices, team or Team()
         self.conditions = conditions = duct.conditions(slip_length)
-        self.div = self.matrices.div
+        self.div, self.grad = self.matrices.div, self.matrices.grad
         if conditions.through is not None:
             self.div = self.div + div_entries(self.matrices, *conditions.through)
+            self.grad = self.div[self.matrices.grad_place]
         self.split = 3 * self.matrices.unknowns
         self.cycle = VelocityCycle(self.matrices, duct.ends, conditions, self.team)
         self.scale_pressure = pressure_scale(self.matrices)
@@ -123,22 +124,24 @@ class System:
 
     def forces(self, velocity: Floats, pressure: Floats) -> tuple[Floats, Floats]:
         """Give what holds the air at each unknown, and its divergence."""
-        force, divergence = self._stokes(self.matrices.stiff, self.matrices.div, velocity, pressure)
+        force, divergence = self._stokes(self.matrices.stiff, self.matrices.div, self.matrices.grad, velocity, pressure)
         if self.convection is not None:
             force += self.convection.force(velocity)
         return force, divergence
 
-    def _stokes(self, stiff: Floats, div: Floats, velocity: Floats, pressure: Floats) -> tuple[Floats, Floats]:
+    def _stokes(
+        self, stiff: Floats, div: Floats, grad: Floats, velocity: Floats, pressure: Floats
+    ) -> tuple[Floats, Floats]:
         m = self.matrices
         force, divergence = np.empty_like(velocity), np.empty(m.vertices)
         self.team.over(0, m.unknowns, sweeps.times, m.start, m.column, stiff, velocity, force)
-        self._add_gradient(div, pressure, force)
+        self._add_gradient(grad, pressure, force)
         self.team.over(0, m.vertices, sweeps.divergence, m.div_start, m.div_column, div, velocity, divergence)
         return force, divergence
 
-    def _add_gradient(self, div: Floats, pressure: Floats, force: Floats) -> None:
+    def _add_gradient(self, grad: Floats, pressure: Floats, force: Floats) -> None:
         m = self.matrices
-        self.team.over(0, m.unknowns, sweeps.add_gradient, m.grad_start, m.grad_row, m.grad_place, div, pressure, force)
+        self.team.over(0, m.unknowns, sweeps.add_gradient, m.grad_start, m.grad_row, grad, pressure, force)
 
     def linearize(self, x: Floats, both: bool) -> None:
         """Let `times` be the change of the equations about an iterate.
@@ -161,7 +164,7 @@ class System:
     def times(self, x: Floats) -> Floats:
         """Apply the equations' matrix."""
         velocity = x[: self.split].reshape(-1, 3)
-        force, divergence = self._stokes(self.stiff, self.div, velocity, x[self.split :])
+        force, divergence = self._stokes(self.stiff, self.div, self.grad, velocity, x[self.split :])
         if len(self.bent):
             m = self.matrices
             self.team.over(0, m.unknowns, sweeps.add_blocks, m.start, m.column, self.bent, velocity, force)
@@ -176,7 +179,7 @@ class System:
     def rest(self, x: Floats) -> Floats:
         """Give what is left of the equations at an iterate."""
         velocity = self.velocity(x)
-        force, divergence = self._stokes(self.matrices.stiff, self.div, velocity, x[self.split :])
+        force, divergence = self._stokes(self.matrices.stiff, self.div, self.grad, velocity, x[self.split :])
         if self.convection is not None:
             force += self.convection.force(velocity)
         return -self._projected(force, divergence, x)
@@ -186,7 +189,7 @@ class System:
         m = self.matrices
         pressure = -self.scale_pressure * x[self.split :] / DIVERGENCE_WEIGHT
         force = np.zeros((m.unknowns, 3))
-        self._add_gradient(self.div, -pressure, force)
+        self._add_gradient(self.grad, -pressure, force)
         force += x[: self.split].reshape(-1, 3)
         self.conditions.project(force)
         velocity = self.cycle(force)
