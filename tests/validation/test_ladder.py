@@ -168,8 +168,8 @@ def test_tables_of_mats_show_error_cost_and_agreement() -> None:
     runs = all_runs()
     found = edge_errors(runs)
     assert f"| lattice | simpleFoam | 0.4 | 1 | -0.9 % (-0.9 to -0.9 %) | {len(REFINED)} |" in edges_table(found)
-    # 5 % edge^2 is 2 % at an edge of .63, coarser than the coarsest that was measured, and 1 % at .44, less what the limit
-    # is above the exact one
+    # 5 % edge^2 is 2 % at an edge of .63, coarser than the coarsest that was measured, and 1 % at .44, less what the
+    # limit is above the exact one
     lattice = next(line for line in time_table(found).split("\n") if line.startswith("| lattice | simpleFoam"))
     assert lattice.count("edge 0.60") == 2
     assert "edge 0.43" in lattice
