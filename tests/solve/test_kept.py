@@ -197,6 +197,17 @@ def test_what_is_kept_and_damaged_is_left_with_the_reason_and_made_again(
         assert any("of the run that was stopped is left, and made again: " in words for words in said), said
 
 
+@pytest.mark.usefixtures("at_once")
+@pytest.mark.parametrize("text", ["nan", "-1", "inf", "some time", "9" * 1000])
+def test_a_time_that_is_none_is_not_counted(tmp_path: Path, text: str) -> None:
+    iterated(KeptIterations(KeptSolve(tmp_path), "flow"))
+    assert 0.0 < KeptSolve(tmp_path).before < 60.0
+    (tmp_path / "seconds").write_text(text)
+    said, listener = listening()
+    assert KeptSolve(tmp_path, listener).before == 0.0
+    assert len(said) == 1
+
+
 def test_a_solve_that_takes_a_moment_writes_nothing(tmp_path: Path) -> None:
     iterated(KeptIterations(KeptSolve(tmp_path / "kept"), "flow"))
     assert not (tmp_path / "kept").exists()

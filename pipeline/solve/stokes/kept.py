@@ -7,6 +7,7 @@ was not: only what they took is saved.
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import contextlib
+import math
 import os
 import time
 from pathlib import Path
@@ -17,11 +18,13 @@ from pipeline.line.places import own_folder, remove, write_text
 from pipeline.line.store import DAMAGE, read_arrays
 from pipeline.nouns.arrays import Floats
 from pipeline.progress import NOTE, Progress, silent
+from pipeline.reading import read_bytes
 from pipeline.solve.stokes.system import DuctFlow
 
 EVERY = 20.0
 """Seconds between two times of writing: a solve that takes less writes nothing."""
 _SECONDS = "seconds"
+_LONGEST = 100  # bytes of a number of seconds
 
 
 class KeptSolve:
@@ -49,7 +52,7 @@ class KeptSolve:
         self.before = 0.0
         if folder is not None and folder.is_dir():
             try:
-                self.before = float((folder / _SECONDS).read_text(encoding="ascii"))
+                self.before = _seconds(read_bytes(folder / _SECONDS, _LONGEST, links=False).decode("ascii"))
             except DAMAGE:
                 # how long it took is no reason to leave what was found
                 tell(f"{NOTE}solve: how long the stopped run took is not known")
@@ -106,6 +109,13 @@ class KeptSolve:
     def _place(self, name: str) -> Path:
         assert self.folder is not None
         return self.folder / f"{name}.npz"
+
+
+def _seconds(text: str) -> float:
+    found = float(text)
+    if not 0.0 <= found < math.inf:
+        raise ValueError(f"{text} is no time")
+    return found
 
 
 def _check(name: str, array: Floats, shape: tuple[int, ...]) -> None:
