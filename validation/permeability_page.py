@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 PAGE = ROOT / "docs" / "permeability.md"
 PICTURE = ROOT / "docs" / "gallery" / "permeability.svg"
-FEWEST = 3
+FEWEST = 4
 """Mats that a fit and its scatter take."""
 PLACES = (0.03, 0.05, 0.1, 0.15, 0.2)
 """Solidities at which the fit and the models are told."""
@@ -35,11 +35,13 @@ Row = TypeVar("Row")
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """Resistance of mats as a power of their solidity: 4 a^2 / k = factor x solidity^power.
+    """Resistance of mats by their solidity: 4 a^2 / k = factor x solidity^power x exp(growth x solidity).
+
+    The exponential is what dense mats have beyond a power of their solidity, as in fits since Davies'.
 
     Parameters
     ----------
-    factor, power : float [-]
+    factor, power, growth : float [-]
     scatter : float [-]
         Standard deviation of the logarithm of a mat's resistance about the fit.
     low, high : float [-]
@@ -49,6 +51,7 @@ class Fit:
 
     factor: float
     power: float
+    growth: float
     scatter: float
     low: float
     high: float
@@ -56,7 +59,7 @@ class Fit:
 
     def resistance(self, solidity: float) -> float:
         """4 a^2 / k."""
-        return float(self.factor * solidity**self.power)
+        return float(self.factor * solidity**self.power * math.exp(self.growth * solidity))
 
     def over(self, mat: Measured) -> float:
         """Give a mat's resistance over that of the fit."""
@@ -65,12 +68,13 @@ class Fit:
 
 def fit(rows: Sequence[Measured]) -> Fit:
     """Fit the resistance without slip."""
-    solidity = [each.solidity for each in rows]
-    x, y = [math.log(s) for s in solidity], [math.log(4.0 / each.permeability) for each in rows]
-    power, offset = statistics.linear_regression(x, y)
-    rest = [value - offset - power * at for at, value in zip(x, y, strict=True)]
-    scatter = math.sqrt(sum(value**2 for value in rest) / (len(rest) - 2))
-    return Fit(math.exp(offset), power, scatter, min(solidity), max(solidity), len(rows))
+    solidity = np.array([each.solidity for each in rows])
+    resistance = np.log([4.0 / each.permeability for each in rows])
+    known = np.column_stack([np.ones(len(rows)), np.log(solidity), solidity])
+    found = np.linalg.lstsq(known, resistance, rcond=None)[0]
+    scatter = float(np.sqrt(np.sum((resistance - known @ found) ** 2) / (len(rows) - known.shape[1])))
+    offset, power, growth = found.tolist()
+    return Fit(math.exp(offset), power, growth, scatter, float(solidity.min()), float(solidity.max()), len(rows))
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,20 +241,20 @@ def resistances() -> dict[str, Callable[[float], float]]:
 
 def law(rows: Sequence[Measured], found: Fit) -> str:
     """Say the fit, its scatter, and its interval: seeds are fitted one by one, since kinds share their plans."""
-    by_seed = [fit(group) for group in grouped(rows, lambda each: each.seed) if len(group) >= 4]
+    by_seed = [fit(group) for group in grouped(rows, lambda each: each.seed) if len(group) >= FEWEST]
     text = (
-        f"4 a²/k = {found.factor:.3g} φ^{found.power:.3g}, {found.mats} mats of {100 * found.low:.1f} to "
-        f"{100 * found.high:.1f} %; one mat lies {100 * found.scatter:.0f} % about it (one standard deviation)."
+        f"4 a²/k = {found.factor:.3g} φ^{found.power:.3g} exp({found.growth:.3g} φ), {found.mats} mats of "
+        f"{100 * found.low:.1f} to {100 * found.high:.1f} %; one mat lies {100 * found.scatter:.0f} % about it "
+        "(one standard deviation)."
     )
     if len(by_seed) < 2:
         return text
-    _, power = interval([each.power for each in by_seed])
     places = [s for s in PLACES if 0.85 * found.low <= s <= 1.05 * found.high]
     known = []
     for s in places:
         _, half = interval([math.log(each.resistance(s)) for each in by_seed])
         known.append(f"{100.0 * half:.0f} % at {s:g}")
-    return f"{text} Fitted seed by seed ({len(by_seed)}): power ± {power:.2g}; resistance ± {', '.join(known)} (95 %)."
+    return f"{text} Fitted seed by seed ({len(by_seed)}): resistance ± {', '.join(known)} (95 %)."
 
 
 def slip_law(rows: Sequence[Slipping]) -> str:
@@ -268,6 +272,7 @@ def slip_law(rows: Sequence[Slipping]) -> str:
 
 def figure(rows: Sequence[Measured], slipped: Sequence[Slipping], found: Fit) -> "Figure":
     """Plot k/a^2 over solidity with the models, the resistance of sizes over the fit, and the gains by slip."""
+    from matplotlib import colormaps
     from matplotlib.figure import Figure
 
     drawn = Figure(figsize=(15.0, 4.6), layout="constrained")
@@ -284,6 +289,9 @@ def figure(rows: Sequence[Measured], slipped: Sequence[Slipping], found: Fit) ->
             [each.solidity for each in own], [each.permeability for each in own], f"k{mark}", fillstyle="none",
             markersize=4, label=f"mats, contact {contact}",
         )  # fmt: skip
+    ticks = [place for place in PLACES if found.low <= place <= found.high]
+    left.set_xticks(ticks, [f"{place:g}" for place in ticks])
+    left.set_xticks([], minor=True)
     left.set_xlabel("solidity of the mesh")
     left.set_ylabel("k/a2, without slip")
     left.grid(alpha=0.3, which="both")
@@ -293,16 +301,22 @@ def figure(rows: Sequence[Measured], slipped: Sequence[Slipping], found: Fit) ->
         mean, half = interval(ratios)
         first = group[0]
         of_plan = first.coverage == 2.0
-        middle.plot([first.side] * len(ratios), ratios, "." if of_plan else "x", color="#999999")
+        # thinner and thicker mats beside those of their side
+        at = first.side + (0.0 if of_plan else 0.3 * (first.coverage - 2.0))
+        middle.plot([at] * len(ratios), ratios, ".", color="#999999")
         if len(ratios) > 1:
-            middle.errorbar(first.side, mean, yerr=half, color="k" if of_plan else "C0", marker="o", capsize=3)
-    middle.set_xlabel("side of the plan [diameters]; blue: other coverages than 2")
+            middle.errorbar(at, mean, yerr=half, color="k" if of_plan else "C0", marker="o", capsize=3)
+        if not of_plan:
+            middle.annotate(f"coverage {first.coverage:g}", (at, mean), xytext=(5, 5), textcoords="offset points")
+    middle.set_xlabel("side of the plan [diameters]")
     middle.set_ylabel("resistance over the fit")
     middle.grid(alpha=0.3)
-    for mat in grouped(slipped, lambda each: (each.slope, each.contact, round(each.spacing, 3), each.seed)):
+    mats = grouped(slipped, lambda each: (each.slope, each.contact, round(each.spacing, 3), each.seed))
+    shades = colormaps["viridis"](np.linspace(0.9, 0.0, max(len(mats), 1)))
+    for mat, shade in zip(sorted(mats, key=lambda mat: mat[0].solidity), shades, strict=False):
         ordered = sorted(mat, key=lambda each: each.knudsen)
         right.plot([each.knudsen for each in ordered], [100.0 * each.gain for each in ordered], ".-", linewidth=0.8,
-                   label=f"{100.0 * ordered[0].solidity:.1f} %, seed {ordered[0].seed}")  # fmt: skip
+                   color=shade, label=f"{100.0 * ordered[0].solidity:.1f} %, seed {ordered[0].seed}")  # fmt: skip
     right.set_xlabel("Knudsen number")
     right.set_ylabel("k with slip over k without, less 1 [%]")
     right.grid(alpha=0.3)

@@ -60,6 +60,7 @@ def test_a_power_law_is_found_again_and_its_scatter_too() -> None:
     exact = fit(mats())
     assert exact.factor == pytest.approx(30.0)
     assert exact.power == pytest.approx(1.4)
+    assert exact.growth == pytest.approx(0.0, abs=1e-9)
     assert exact.scatter == pytest.approx(0.0, abs=1e-9)
     assert exact.mats == 20
     # twenty draws know their standard deviation to a sixth
@@ -136,6 +137,15 @@ def test_each_seed_of_a_study_is_a_study_of_its_own() -> None:
     second = one_seed(study, 1, keep=True)
     assert (second.first_seed, second.seeds, second.keep) == (study.first_seed + 1, 1, "everything")
     assert second.points() == study.points()
+
+
+def test_what_dense_mats_have_beyond_a_power_is_found_too() -> None:
+    dense = [
+        dataclasses.replace(each, permeability=each.permeability * math.exp(-3.0 * each.solidity)) for each in mats()
+    ]
+    found = fit(dense)
+    assert (found.factor, found.power, found.growth) == pytest.approx((30.0, 1.4, 3.0))
+    assert found.resistance(0.1) == pytest.approx(30.0 * 0.1**1.4 * math.exp(0.3))
 
 
 def test_an_interval_is_students() -> None:
