@@ -13,7 +13,6 @@ from pipeline.mesh.boundary import planes
 from pipeline.mesh.distance import fiber_distance
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.domain import FluidDomain
-from pipeline.nouns.patches import DUCT
 
 if TYPE_CHECKING:
     from pipeline.geometry.fibers import FiberDistance
@@ -34,7 +33,7 @@ class Freedom:
     box : Box [m]
         The duct, which no vertex may leave.
     cyclic : bool
-        Whether opposite sides are one to the solver: then vertices on them stay, or the sides would not fit each other.
+        Whether opposite sides are one to the solver: then what moves on one has to move on the other.
     distance : FiberDistance
     diameter : (fibers,) array [m]
     off, along : float [-]
@@ -89,6 +88,4 @@ class Freedom:
         for plane in planes(self.box):
             there = (on & np.uint8(1 << plane.patch)) > 0
             free[there, plane.axis] = 0.0
-            if self.cyclic and DUCT[plane.patch].role == "side":
-                free[there] = 0.0
         return free

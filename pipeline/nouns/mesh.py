@@ -13,13 +13,15 @@ from pipeline.nouns.arrays import Floats, Ints, all_within, freeze, require
 from pipeline.nouns.patches import FIBERS
 
 FLAT = ("empty", "wedge")
+CYCLIC = "cyclic"
 
 
 @dataclass(frozen=True, slots=True)
 class Patch:
     """A named run of boundary faces: ``faces[start:start + count]``.
 
-    `kind` is one of `FLAT` where OpenFOAM's type says that the mesh has fewer than three dimensions, else ``"patch"``.
+    `kind` is one of `FLAT` where OpenFOAM's type says that the mesh has fewer than three dimensions, `CYCLIC` where the
+    mesh goes on through an opposite patch, else ``"patch"``.
     """
 
     name: str

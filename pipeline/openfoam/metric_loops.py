@@ -26,6 +26,8 @@ class Measured(NamedTuple):
         As in `pipeline.geometry.polyhedra.Polyhedra`.
     lively : (3,) bool array
         As `pipeline.openfoam.metrics.directions` gives it.
+    inner : (faces,) bool array
+        Whether there is a cell on both sides, be it through a cyclic patch.
     """
 
     points: Floats
@@ -40,6 +42,7 @@ class Measured(NamedTuple):
     first: Ints
     faces: Cells
     lively: Bools
+    inner: Bools
 
 
 @compiled_for_threads
@@ -177,7 +180,7 @@ def determinant(mesh: Measured, found: Floats, begin: int, end: int) -> None:
         count = 0
         for k in range(mesh.first[cell], mesh.first[cell + 1]):
             face = _face(mesh, k)
-            if face >= len(mesh.neighbour):
+            if not mesh.inner[face]:
                 continue
             x, y, z = row(mesh.areas, face)
             xx += x * x

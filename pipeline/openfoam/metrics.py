@@ -15,7 +15,7 @@ import numpy as np
 from pipeline.geometry.polyhedra import Polyhedra
 from pipeline.geometry.threads import in_parts
 from pipeline.nouns.arrays import Bools, Floats
-from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.mesh import CYCLIC, FaceMesh
 
 if TYPE_CHECKING:
     from pipeline.openfoam.metric_loops import Measured
@@ -34,10 +34,19 @@ def _filled(
     measured = Measured(
         mesh.points, mesh.corners, mesh.offsets, mesh.owner, mesh.neighbour, read_only(shape.areas),
         read_only(shape.centers), read_only(shape.cell_centers), read_only(shape.volumes), read_only(shape.first),
-        read_only(shape.faces), read_only(directions(mesh, shape)),
+        read_only(shape.faces), read_only(directions(mesh, shape)), read_only(_inner(mesh)),
     )  # fmt: skip
     found = np.empty(count)
     in_parts(lambda begin, end: loop(measured, found, begin, end), count)
+    return found
+
+
+def _inner(mesh: FaceMesh) -> Bools:
+    found = np.zeros(mesh.faces, np.bool_)
+    found[: mesh.internal] = True
+    for patch in mesh.patches:
+        if patch.kind == CYCLIC:
+            found[patch.start : patch.start + patch.count] = True
     return found
 
 
@@ -96,8 +105,9 @@ def openness(mesh: FaceMesh, shape: Polyhedra) -> Floats:
 def determinant(mesh: FaceMesh, shape: Polyhedra) -> Floats:
     """Give ``det(sum(S S) / (mean of |S|)^2) / 8`` over a cell's internal faces, (cells,) array [1].
 
-    1 for a cube among cubes; 0 where all internal faces lie in two directions, so that no gradient is known. A flat
-    mesh has 1 in the sum's place for the direction that it lacks, and a mesh along a line has 1.
+    1 for a cube among cubes; 0 where all internal faces lie in two directions, so that no gradient is known. A face of
+    a cyclic patch counts as internal, as it does for OpenFOAM. A flat mesh has 1 in the sum's place for the direction
+    that it lacks, and a mesh along a line has 1.
     """
     if directions(mesh, shape).sum() < 2:
         return np.ones(mesh.cells)

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from pipeline.errors import StageError
 from pipeline.nouns.arrays import Ints
-from pipeline.nouns.mesh import FLAT, FaceMesh, Patch
+from pipeline.nouns.mesh import CYCLIC, FLAT, FaceMesh, Patch
 from pipeline.openfoam.dictionary import COMMENT, Words, read_named
 from pipeline.reading import open_file
 
@@ -215,5 +215,5 @@ def _read_boundary(content: bytes) -> tuple[Patch, ...]:
         if not (count.isdigit() and start.isdigit()):
             raise ValueError(f"patch {name} in boundary has no nFaces or startFace")
         kind = found.get("type", "")
-        patches.append(Patch(name, int(start), int(count), kind if kind in FLAT else "patch"))
+        patches.append(Patch(name, int(start), int(count), kind if kind in (*FLAT, CYCLIC) else "patch"))
     return tuple(patches)

@@ -2,6 +2,8 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+from dataclasses import replace
+
 import numpy as np
 
 from pipeline.mesh.engines.flawed import FlawedMeshError
@@ -11,12 +13,15 @@ from pipeline.mesh.settings import TetmeshSettings
 from pipeline.mesh.working_mesh import WorkingMesh
 from pipeline.nouns.arrays import Floats
 from pipeline.nouns.domain import FluidDomain
-from pipeline.nouns.mesh import FaceMesh
+from pipeline.nouns.mesh import CYCLIC, FaceMesh
 from pipeline.nouns.mesh_measures import MeshingCost, TetmeshMeasures
-from pipeline.nouns.patches import FIBERS
+from pipeline.nouns.patches import FIBERS, SIDES
 from pipeline.progress import Progress
 
 _ROUNDS = 2  # the second makes good what repairing after the first moved
+
+
+_CUTS = (0.35, 0.65)  # of the way from a side to the opposite one: what lies at one is away from the other
 
 
 def finished(
@@ -55,6 +60,9 @@ def finished(
     _check_patches(mesh, domain, settings)
     progress("numbering cells and faces", 0.9)
     faces = FaceMesh.of_triangles(mesh.points, tet_faces(mesh.tets, mesh.across), domain.patches)
+    if domain.cyclic:
+        sides = tuple(replace(patch, kind=CYCLIC) if patch.name in SIDES else patch for patch in faces.patches)
+        faces = replace(faces, patches=sides)
     measures = TetmeshMeasures(
         points=len(faces.points),
         cells=faces.cells,
@@ -71,14 +79,39 @@ def finished(
 
 def improved(mesh: WorkingMesh, progress: Progress) -> tuple[WorkingMesh, int, float]:
     """Repair cells and move walls onto their fibers: the mesh, cells that stay faulty, and the air filled [m3]."""
+    if mesh.freedom.cyclic:
+        return _improved_across_sides(mesh, progress)
     filled, faulty = 0.0, 0
     for turn in range(_ROUNDS):
-        progress("repairing the worst cells", 0.6 + 0.15 * turn)
-        mesh, faulty, air = repaired(mesh, progress)
+        mesh, faulty, air = _improved_once(mesh, progress, turn / _ROUNDS)
         filled += air
-        progress("moving the walls onto the fibers", 0.7 + 0.15 * turn)
-        mesh = on_fibers(mesh)
     return mesh, faulty, filled
+
+
+def _improved_across_sides(mesh: WorkingMesh, progress: Progress) -> tuple[WorkingMesh, int, float]:
+    """Improve a mesh with cyclic sides in its duct, then put together across its sides and cut elsewhere, twice."""
+    # numba takes half a second to load, which no refused case file should cost
+    from pipeline.mesh.improve.across_sides import back_in_duct, shifted, with_sides, with_sides_kept
+    from pipeline.mesh.improve.smooth import faulty_cells
+
+    freedom = mesh.freedom
+    work, _, filled = _improved_once(with_sides_kept(mesh), progress, 0.0)
+    mesh = with_sides(work, freedom)
+    for turn, share in enumerate(_CUTS, 1):
+        whole = shifted(mesh, share)
+        # sides that do not fit each other are refused where cyclic patches are written
+        if whole is not None:
+            work, _, air = _improved_once(whole.mesh, progress, turn / (1 + len(_CUTS)))
+            mesh = back_in_duct(whole, work)
+            filled += air
+    return mesh, int(faulty_cells(with_sides_kept(mesh)).sum()), filled
+
+
+def _improved_once(mesh: WorkingMesh, progress: Progress, done: float) -> tuple[WorkingMesh, int, float]:
+    progress("repairing the worst cells", 0.6 + 0.3 * done)
+    mesh, faulty, air = repaired(mesh, progress)
+    progress("moving the walls onto the fibers", 0.7 + 0.3 * done)
+    return on_fibers(mesh), faulty, air
 
 
 def _check_patches(mesh: WorkingMesh, domain: FluidDomain, settings: TetmeshSettings) -> None:

@@ -7,11 +7,11 @@ Some cells in ten thousand are faulty: all work but looking for them is done on 
 
 import numpy as np
 
+from pipeline.geometry.tets import FACES
 from pipeline.mesh.improve.crevices import at_walls, beside_fibers, in_crevice
 from pipeline.mesh.improve.split import split_corners, split_longest
 from pipeline.mesh.working_mesh import INTERFACE, LATER, WorkingMesh
 from pipeline.nouns.arrays import Bools
-from pipeline.nouns.patches import DUCT
 from pipeline.progress import Progress, silent
 
 _FILLINGS = 8  # rounds of smoothing and filling crevices
@@ -92,11 +92,7 @@ def _repaired_part(mesh: WorkingMesh) -> tuple[WorkingMesh, float]:
         # away from the fibers nothing is a crevice: a filled cell at the inlet of a coarse mesh doubled a pressure drop
         crevice = in_crevice(mesh, faulty, stuck) & at_walls(mesh) & ~(mesh.across < INTERFACE).any(axis=1)
         crevice[crevice] = beside_fibers(mesh, np.flatnonzero(crevice))
-        if mesh.freedom.cyclic:
-            # what were filled or split on one side would have no partner opposite
-            at_side = _on_sides(mesh)[mesh.tets].sum(axis=1)
-            crevice &= at_side < 1
-            faulty &= at_side < 2
+        crevice &= ~_on_inner_planes(mesh)
         filled += float(volume[crevice].sum())
         loose = np.union1d(loose, mesh.tets[crevice])
         mesh, faulty = mesh.without(crevice), faulty[~crevice]
@@ -116,7 +112,11 @@ def _can_wait(mesh: WorkingMesh) -> Bools:
     return np.asarray(near)
 
 
-def _on_sides(mesh: WorkingMesh) -> Bools:
-    """Tell which vertices lie on a side of the duct, (n,) array."""
-    sides = sum(1 << number for number, patch in enumerate(DUCT) if patch.role == "side")
-    return np.asarray((mesh.planes & np.uint8(sides)) > 0)
+def _on_inner_planes(mesh: WorkingMesh) -> Bools:
+    """Tell which cells have a face on a plane of the duct with air beyond it, as there is where sides are cyclic."""
+    found = np.zeros(mesh.cells, np.bool_)
+    for side, corners in enumerate(FACES):
+        a, b, c = (mesh.planes[mesh.tets[:, corner]] for corner in corners)
+        beyond = mesh.across[:, side]
+        found |= ((a & b & c) > 0) & ((beyond >= 0) | (beyond <= INTERFACE))
+    return found

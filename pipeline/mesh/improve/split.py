@@ -31,15 +31,10 @@ _ROUNDS = 20  # neighboring corners take turns; on real mats three rounds were t
 
 
 def split_corners(mesh: WorkingMesh) -> WorkingMesh:
-    """Split cells until none has more than one boundary face.
-
-    Where opposite sides of the duct are one to the solver, cells are split about their centers alone: the boundary
-    keeps its triangles, at the price of flatter cells.
-    """
-    keep_edges = mesh.freedom.cyclic
+    """Split cells until none has more than one boundary face."""
     for _ in range(_ROUNDS):
         faces = mesh.boundary_faces()
-        three = np.flatnonzero(faces >= (2 if keep_edges else 3))
+        three = np.flatnonzero(faces >= 3)
         two = np.flatnonzero(faces == 2)
         if len(three):
             mesh = _with_centers(mesh, three)
