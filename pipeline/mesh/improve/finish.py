@@ -79,7 +79,11 @@ def finished(
 
 def improved(mesh: WorkingMesh, progress: Progress) -> tuple[WorkingMesh, int, float]:
     """Repair cells and move walls onto their fibers: the mesh, cells that stay faulty, and the air filled [m3]."""
-    if mesh.freedom.cyclic:
+    # numba takes half a second to load, which no refused case file should cost
+    from pipeline.mesh.improve.across_sides import shifted
+
+    # sides that do not fit each other are refused where cyclic patches are written
+    if mesh.freedom.cyclic and shifted(mesh, _CUTS[0]) is not None:
         return _improved_across_sides(mesh, progress)
     filled, faulty = 0.0, 0
     for turn in range(_ROUNDS):
@@ -99,8 +103,7 @@ def _improved_across_sides(mesh: WorkingMesh, progress: Progress) -> tuple[Worki
     mesh = with_sides(work, freedom)
     for turn, share in enumerate(_CUTS, 1):
         whole = shifted(mesh, share)
-        # sides that do not fit each other are refused where cyclic patches are written
-        if whole is not None:
+        if whole is not None:  # what was filled may leave sides that fit no more
             work, _, air = _improved_once(whole.mesh, progress, turn / (1 + len(_CUTS)))
             mesh = back_in_duct(whole, work)
             filled += air
