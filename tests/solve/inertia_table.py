@@ -27,7 +27,7 @@ PUBLISHED = ((6.344, 1.0262), (17.852, 1.1127))
 """Reynolds numbers of face velocity and diameter, and drag with inertia over that without, endless square array.
 
 Forslund, Larsson, Hellstrom & Lundstrom, Transp. Porous Med. 148, 545 (2023), Fig. 6: finite differences on a
-staircase, read off the vectors of the open figure; their creeping drag is .6 % high.
+staircase, as the project TensorLBM read them off the open figure's vectors; their creeping drag is .6 % high.
 """
 _ROWS, _INNER = 5, 2
 

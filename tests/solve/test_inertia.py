@@ -205,5 +205,5 @@ def test_inertia_adds_to_the_drag_what_simplefoam_says_on_hexahedra(tmp_path: Pa
         write_openfoam(cylinder(0.1, RADIUS, around=16, outward=16), case, flow)
         found = solve(case, work, flow, Bed(domain.slab.face_area, 1.0), OpenFoamSettings(tolerance=1e-5))
         others.append(found.drag / flow.face_velocity)
-    # 16 cells a side leave simpleFoam half a percent of the drag itself, in both alike
-    assert own[1] / own[0] == pytest.approx(others[1] / others[0], rel=0.01)
+    # 16 cells a side leave simpleFoam half a percent of the drag itself, in both alike; 12 leave .03 % of the ratio
+    assert own[1] / own[0] == pytest.approx(others[1] / others[0], rel=2e-3)
