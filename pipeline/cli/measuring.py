@@ -20,6 +20,7 @@ from pipeline.micrograph.page import facts, write_page
 from pipeline.microscope.picture import Micrograph
 from pipeline.microscope.read import Window, read_micrograph
 from pipeline.units import FROM_FILE, Length
+from pipeline.writing import write_whole
 
 
 def measure_picture(
@@ -39,9 +40,8 @@ def measure_picture(
     measured = measure(picture)
     if case is not None:
         with disk_trouble_explained(case):
-            case.parent.mkdir(parents=True, exist_ok=True)
             text = case_of(measured, picture.origin, path_beside(path, case), picture.pixel)
-            case.write_text(text, encoding="utf-8")
+            write_whole(case, text)
     page = page or Path("runs") / path.stem / "micrograph.html"
     with disk_trouble_explained(page):
         write_page(picture, measured, page)

@@ -2,6 +2,7 @@
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+import contextlib
 import os
 import textwrap
 from collections.abc import Iterator, Mapping
@@ -78,12 +79,18 @@ def write_first_case(path: Path, generator: str) -> None:
     with disk_trouble_explained(path):
         try:
             # exclusive creation: no moment between looking and writing
-            with path.open("x", encoding="utf-8") as file:
-                file.write(text)
+            file = path.open("x", encoding="utf-8")
         except FileExistsError:
             raise StageError(f"{path} is there already and stays as it is; name another file") from None
         except FileNotFoundError:
             raise StageError(f"there is no folder {path.parent}{os.sep}; make it first") from None
+        try:
+            with file:
+                file.write(text)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                path.unlink()
+            raise
 
 
 def first_case(generator: str) -> str:

@@ -24,6 +24,7 @@ from pipeline.tomography.contour import surface_of
 from pipeline.tomography.read import MEMORY_PER_VOXEL, read_voxels
 from pipeline.tomography.room import room_between
 from pipeline.tomography.solid import segment
+from pipeline.writing import whole_file, write_whole
 
 
 def surface_of_tomogram(
@@ -82,8 +83,7 @@ def surface_of_tomogram(
         _write(into, points, triangles)
     if case is not None:
         with disk_trouble_explained(case):
-            case.parent.mkdir(parents=True, exist_ok=True)
-            case.write_text(_case(into, case, path), encoding="utf-8")
+            write_whole(case, _case(into, case, path))
     if as_json:
         sys.stdout.write(json.dumps(told, indent=2, allow_nan=False) + "\n")
     elif not quiet:
@@ -104,9 +104,8 @@ def _write(path: Path, points: np.ndarray[Any, Any], triangles: np.ndarray[Any, 
     import pyvista as pv
 
     path.parent.mkdir(parents=True, exist_ok=True)
-    # VTK says nothing, or not what is wrong, where it cannot write
-    path.write_bytes(b"")
-    pv.PolyData.from_regular_faces(points * 1e6, triangles).save(path)
+    with whole_file(path) as side:
+        pv.PolyData.from_regular_faces(points * 1e6, triangles).save(side)
 
 
 def _case(surface: Path, case: Path, source: Path) -> str:

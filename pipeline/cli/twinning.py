@@ -22,6 +22,7 @@ from pipeline.twin.match import Twin, match
 from pipeline.twin.settings import MeasuredFilter
 from pipeline.twin.solved import solver
 from pipeline.twin.told import head_of, notes, numbers, table_of
+from pipeline.writing import write_whole
 
 UNMATCHED = 3
 """Exit code where the case is the nearest, and not all that was measured is within its tolerance."""
@@ -53,8 +54,7 @@ def find_twin(
     text = twin.text(head_of(twin), picture)
     if case is not None:
         with disk_trouble_explained(case):
-            case.parent.mkdir(parents=True, exist_ok=True)
-            case.write_text(text, encoding="utf-8")
+            write_whole(case, text)
     if as_json:
         told = {**numbers(twin), "case": None if case is None else str(case)}
         sys.stdout.write(json.dumps(told, indent=2, allow_nan=False) + "\n")

@@ -21,6 +21,7 @@ from pipeline.report.views.painter import possible
 from pipeline.report.views.render import Painting, screenless
 from pipeline.report.views.scenes import SCENES, Subject, show
 from pipeline.report.views.subject import subject_of
+from pipeline.writing import write_whole
 
 COMPARED = "compared.html"
 """Page of several runs when nobody names a file."""
@@ -55,8 +56,7 @@ def _page_of_one(folder: Path, into: Path | None, progress: Progress) -> Path:
     if into is None:
         return page
     with disk_trouble_explained(into):
-        into.parent.mkdir(parents=True, exist_ok=True)
-        into.write_bytes(page.read_bytes())
+        write_whole(into, page.read_bytes())
     return into
 
 
@@ -132,6 +132,5 @@ def _draw(subject: Subject, files: dict[str, Path], kind: str) -> None:
         )
     for name, path in files.items():
         with disk_trouble_explained(path):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(pictures.files[name])
+            write_whole(path, pictures.files[name])
         out.print(str(path), markup=False, highlight=False, soft_wrap=True)

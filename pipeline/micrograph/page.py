@@ -17,6 +17,7 @@ from pipeline.micrograph.measure import Interval, Measured
 from pipeline.micrograph.ribbons import Image
 from pipeline.microscope.picture import Micrograph
 from pipeline.report.page.svg import BLUE, INK, ORANGE, chart
+from pipeline.writing import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -79,8 +80,7 @@ def write_page(picture: Micrograph, measured: Measured, path: Path, twin: Microg
         diameters=_diameter_chart(measured),
         directions=_direction_chart(measured),
     )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(page, encoding="utf-8")
+    write_whole(path, page)
 
 
 def facts(picture: Micrograph, measured: Measured) -> list[tuple[str, str]]:

@@ -5,6 +5,7 @@
 from pathlib import Path
 
 from pipeline.microscope.picture import Micrograph
+from pipeline.writing import whole_file
 
 
 def write_png(picture: Micrograph, path: Path) -> None:
@@ -22,4 +23,5 @@ def write_png(picture: Micrograph, path: Path) -> None:
     notes.add_text("Description", picture.origin)
     per_inch = 0.0254 / picture.pixel
     image = Image.fromarray((255 * picture.brightness).round().astype("uint8"))
-    image.save(path, format="png", pnginfo=notes, dpi=(per_inch, per_inch))
+    with whole_file(path) as side:
+        image.save(side, format="png", pnginfo=notes, dpi=(per_inch, per_inch))

@@ -10,6 +10,7 @@ from pathlib import Path
 from pipeline import child_process
 from pipeline.errors import StageError
 from pipeline.scratch import scratch_folder
+from pipeline.writing import write_whole
 
 _BROWSERS = (
     "chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome", "microsoft-edge",
@@ -76,5 +77,4 @@ def print_page(page: Path, pdf: Path) -> None:
         if not made.is_file():
             said = log.read_text(errors="replace").strip().splitlines()
             raise StageError(f"{program} did not print {page}: {said[-1] if said else 'it said nothing'}")
-        pdf.parent.mkdir(parents=True, exist_ok=True)
-        pdf.write_bytes(made.read_bytes())
+        write_whole(pdf, made.read_bytes())

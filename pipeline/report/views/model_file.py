@@ -19,6 +19,7 @@ from pipeline.report.views.drawing import CELLS, EDGES, PALETTE
 from pipeline.report.views.layers import Layer, Model
 from pipeline.report.views.model_cells import NODES, Field, ModelCells
 from pipeline.report.views.model_flow import NumberField, Particles, Streamlines
+from pipeline.writing import write_whole
 
 _STEPS = 65_535
 """Coordinates are whole numbers up to this, of the largest extent: a micrometer in 30 micrometers is 2,000 of them."""
@@ -43,8 +44,7 @@ def write_model(model: Model, title: str, path: Path, flow: bool = True) -> None
         Whether the air is to flow to the right at first; z points upward otherwise.
     """
     page = model_html(model, title, flow)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(page, encoding="utf-8")
+    write_whole(path, page)
 
 
 def model_html(model: Model, title: str, flow: bool = True) -> str:
