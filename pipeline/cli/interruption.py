@@ -31,7 +31,10 @@ class Interrupted(KeyboardInterrupt):
 
 @contextlib.contextmanager
 def interruptible() -> Iterator[None]:
-    """End the process in order when it is asked to end within the block.
+    """End the process in order when it is asked to end within the block, and as it would when asked after it.
+
+    For the whole of a command: what comes behind the block is Python's own end, which takes its time where large
+    libraries are loaded, and all has been said and done.
 
     Raises
     ------
@@ -42,15 +45,17 @@ def interruptible() -> Iterator[None]:
     sys.unraisablehook = _without_interruptions
     # one that is ignored, as nohup has it, stays ignored
     numbers = [getattr(signal, name) for name in _NAMES if hasattr(signal, name)]
-    before = {number: signal.getsignal(number) for number in numbers if signal.getsignal(number) != signal.SIG_IGN}
+    heard = [number for number in numbers if signal.getsignal(number) != signal.SIG_IGN]
+    afterwards = signal.SIG_IGN
     try:
-        for number in before:
+        for number in heard:
             signal.signal(number, _interrupt)
         yield
     except KeyboardInterrupt as interruption:
         # a second one ends the process on the spot
-        for number in before:
-            signal.signal(number, signal.SIG_DFL)
+        afterwards = signal.SIG_DFL
+        for each in heard:
+            signal.signal(each, afterwards)
         number = interruption.number if isinstance(interruption, Interrupted) else signal.SIGINT
         name = signal.Signals(number).name
         # who closed the terminal does not read this
@@ -60,10 +65,9 @@ def interruptible() -> Iterator[None]:
             )
             sys.stderr.flush()
         raise SystemExit(128 + number) from None
-    else:
-        for number, handler in before.items():
-            signal.signal(number, handler)
     finally:
+        for each in heard:
+            signal.signal(each, afterwards)
         _raise_again(None)
         sys.unraisablehook = kept
 

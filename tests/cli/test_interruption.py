@@ -128,3 +128,17 @@ def test_a_second_signal_ends_it_on_the_spot(tmp_path: Path) -> None:
     child.send_signal(signal.SIGINT)
     child.communicate(timeout=60)
     assert child.returncode == -signal.SIGINT
+
+
+@pytest.mark.parametrize("code", [0, 2])
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+def test_a_signal_while_python_itself_ends_changes_nothing(name: str, code: int) -> None:
+    # all is written and said, but libraries take their time to go
+    last = f"sys.exit({code})" if code else "pass"
+    script = (
+        "import atexit, os, signal, sys; from pipeline.cli.interruption import interruptible\n"
+        f"atexit.register(lambda: os.kill(os.getpid(), signal.{name}))\n"
+        f"with interruptible(): {last}\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (code, "")
