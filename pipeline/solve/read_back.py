@@ -49,7 +49,9 @@ def history(case: Path, name: str, column: int = 1) -> Floats:
 
 
 def table(case: Path) -> Floats:
-    """Read what is known of each iteration that all tables tell of.
+    """Read what is known of each iteration that all tables tell of, that of the drag among them.
+
+    A run that is ended between the lines that two tables get of one iteration would be told by this one and that.
 
     Returns
     -------
@@ -57,8 +59,8 @@ def table(case: Path) -> Floats:
         Iteration, mean pressure over the density at inlet and outlet, flow out of inlet and outlet.
     """
     each = [history(case, name) for name in (PRESSURE_IN, PRESSURE_OUT, FLOW_IN, FLOW_OUT)]
-    common = each[0][:, 0]
-    for other in each[1:]:
+    common = history(case, DRAG)[:, 0]
+    for other in each:
         common = np.intersect1d(common, other[:, 0])
     return np.column_stack([common, *(found[np.isin(found[:, 0], common), 1] for found in each)])
 

@@ -279,7 +279,8 @@ def _solution(work: Path, flow: Flow, bed: Bed, settled: bool) -> Solution:
     row = read_back.table(work)[-1]
     drop = _drop(row, flow)
     # the third number of the force's first vector: along z
-    drag = float(read_back.history(work, read_back.DRAG, 3)[-1, 1])
+    drags = read_back.history(work, read_back.DRAG, 3)
+    drag = float(drags[drags[:, 0] == row[0], 1][0])
     return Solution(
         pressure_drop=drop,
         flow_rate=-float(row[3]),

@@ -2,8 +2,11 @@
 
 from pathlib import Path
 
+import numpy as np
+import pytest
+
 from pipeline.openfoam.process import tail
-from pipeline.solve.read_back import history, residuals
+from pipeline.solve.read_back import DRAG, FLOW_IN, FLOW_OUT, PRESSURE_IN, PRESSURE_OUT, history, residuals, table
 
 
 def write(path: Path, text: str) -> None:
@@ -36,3 +39,14 @@ def test_nothing_written_is_an_empty_history(tmp_path: Path) -> None:
 def test_the_latest_residuals_count() -> None:
     text = "Solving for Ux, Initial residual = 1, Final\nSolving for Ux, Initial residual = 2.5e-03, Final\n"
     assert residuals(text) == {"Ux": 0.0025}
+
+
+@pytest.mark.parametrize("behind", [PRESSURE_IN, PRESSURE_OUT, FLOW_IN, FLOW_OUT, DRAG])
+def test_an_iteration_counts_once_every_table_has_it(tmp_path: Path, behind: str) -> None:
+    # a solver that was ended between two of its function objects: one table lacks the last iteration
+    for name in (PRESSURE_IN, PRESSURE_OUT, FLOW_IN, FLOW_OUT, DRAG):
+        file = "force.dat" if name == DRAG else "surfaceFieldValue.dat"
+        last = 2 if name == behind else 3
+        lines = "".join(f"{at}\t{at}.5\t0\t0\n" for at in range(1, last + 1))
+        write(tmp_path / "postProcessing" / name / "0" / file, lines)
+    np.testing.assert_array_equal(table(tmp_path)[:, 0], [1.0, 2.0])
