@@ -49,9 +49,12 @@ check: setup  ## Style, types, imports, and the examples in the documentation
 	$(BIN)/deptry pipeline
 	$(BIN)/pytest --doctest-modules pipeline docs README.md
 
-bench: setup  ## Measure what the documentation quotes: writing, engines side by side; make verify has the time to a percent
+bench: setup  ## Measure what docs/meshing.md and docs/formats.md show (half an hour; needs OpenFOAM)
+	$(BIN)/python -m benchmarks.meshing runs/bench/meshing
+	$(BIN)/python -m benchmarks.growth runs/bench/growth 12.5 25 50 100
+	$(BIN)/python -m benchmarks.robustness 10
+	$(BIN)/python -m benchmarks.robustness 10 tetwild
 	$(BIN)/pytest benchmarks --benchmark-only --benchmark-group-by=func
-	$(BIN)/python -m benchmarks.meshers runs/bench/meshers
 
 verify: setup  ## Solve arrays, lattices and mats, and write what docs/verification.md shows (half an hour of processor time; needs OpenFOAM)
 	$(BIN)/python docs/verify.py runs/verification

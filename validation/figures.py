@@ -19,6 +19,7 @@ from typing import Any
 from pipeline.cli.bundled import found
 from pipeline.line.run import Run
 from pipeline.line.store import read_json
+from pipeline.report.page.headline import headline
 from validation.tables import filled
 
 ROOT = Path(__file__).parents[1]
@@ -59,6 +60,8 @@ def measured(folder: Path) -> dict[str, Any]:
     solution = read_json(folder / "solve" / "solution.json")
     comparison = read_json(folder / "compare" / "comparison.json")
     metrics = quality["metrics"]
+    number = headline(run)
+    assert number is not None
     return {
         "commit": _commit(),
         "command": "fibertwin run default",
@@ -75,6 +78,7 @@ def measured(folder: Path) -> dict[str, Any]:
         "wall_deviation": [measures["fidelity"]["mean_deviation"], measures["fidelity"]["typical_deviation"]],
         "solidity": comparison["solidity"],
         "models": {name: comparison["models"][name]["mesh"] for name in _MODELS},
+        "headline": {"interval": number.interval, "of": number.of, "notes": number.notes},
         "solution": {
             name: solution[name]
             for name in (
@@ -112,6 +116,7 @@ def table(figures: Mapping[str, Any]) -> str:
         ("solidity nominal / surface / mesh",
          " / ".join(f"{f['solidity'][which]:.2%}" for which in ("nominal", "surface", "mesh"))),
         ("pressure drop at 2.5 cm/s, solved", f"{shown}; forces balance to {abs(s['force_balance_error']):.1g}"),
+        ("its interval", " ".join([f["headline"]["interval"] + ".", f["headline"]["of"], f["headline"]["notes"][-1]])),
         ("models, from the mesh's solidity", f"Davies {models['davies']:.3g}, Kuwabara {models['kuwabara']:.3g} "
          f"(with slip {models['kuwabara_slip']:.3g}), Happel {models['happel']:.3g} Pa"),
     ]  # fmt: skip
