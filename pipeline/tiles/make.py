@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 FOLDER = "tiles"
 """Folder in a run's that holds the pieces, the case and what is told of them."""
 _WORST = ("pass", "warn", "fail")
-_PROCESS, _CELL = 2.7e8, 1200.0  # bytes of a process, and for each cell of its tile: docs/meshing.md
+_PROCESS, _CELL = 7.5e8, 330.0  # bytes of a process, and for each cell of its tile: docs/meshing.md
 
 
 def tiled(
