@@ -2,6 +2,7 @@
 
 Python raises its KeyboardInterrupt once, and where that happens inside a callback of a library written in C, as while
 numba compiles, the exception is thrown away and the command goes on. Here it is raised again until it has arrived.
+While a compiled module is loaded it waits: VTK's do not expect an exception then, and the process crashed.
 """
 
 # SPDX-License-Identifier: GPL-3.0-or-later
@@ -74,7 +75,8 @@ def interruptible() -> Iterator[None]:
 
 def _interrupt(number: int, frame: FrameType | None) -> None:
     _raise_again(number)
-    raise Interrupted(number)
+    if not _loading(frame):
+        raise Interrupted(number)
 
 
 def _raise_again(number: int | None) -> None:
@@ -84,11 +86,20 @@ def _raise_again(number: int | None) -> None:
 
     def again(alarm: int, frame: FrameType | None) -> None:
         # in a block that cleans up after it, it has arrived, and must let that block end
-        if number is not None and not _arrived():
+        if number is not None and not _arrived() and not _loading(frame):
             raise Interrupted(number)
 
     signal.setitimer(signal.ITIMER_REAL, *((0.0, 0.0) if number is None else (_AGAIN, _AGAIN)))
     signal.signal(signal.SIGALRM, signal.SIG_DFL if number is None else again)
+
+
+def _loading(frame: FrameType | None) -> bool:
+    """Whether a compiled module is being loaded, and an interruption can be raised again once it is."""
+    while frame is not None and hasattr(signal, "setitimer"):
+        if frame.f_code.co_qualname.startswith("ExtensionFileLoader."):
+            return True
+        frame = frame.f_back
+    return False
 
 
 def _arrived() -> bool:

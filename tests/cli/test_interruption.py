@@ -142,3 +142,17 @@ def test_a_signal_while_python_itself_ends_changes_nothing(name: str, code: int)
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (code, "")
+
+
+def test_an_interruption_waits_while_a_compiled_module_is_loaded() -> None:
+    # VTK's crash where an exception comes from what they import themselves; the class is named as Python's own
+    script = (
+        "import os, signal, sys, time; from pipeline.cli.interruption import interruptible\n"
+        "class ExtensionFileLoader:\n"
+        "    def exec_module(self):\n"
+        "        os.kill(os.getpid(), signal.SIGTERM); time.sleep(0.3); print('loaded', flush=True)\n"
+        "with interruptible(): ExtensionFileLoader().exec_module(); time.sleep(600)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False, timeout=120)
+    assert (done.returncode, done.stdout) == (143, "loaded\n")
+    assert done.stderr.startswith("stopped by SIGTERM")

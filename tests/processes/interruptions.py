@@ -158,12 +158,17 @@ def _whole(path: Path, content: bytes) -> bool:
         case ".npz":
             with zipfile.ZipFile(path) as archive:
                 return archive.testzip() is None
-        case ".html" | ".svg" | ".vtp":
+        case ".html" | ".svg" | ".vtp" | ".vtu" | ".vtm":
             return content.rstrip().endswith((b"</html>", b"</svg>", b"</VTKFile>"))
         case ".pdf":
             return content.rstrip().endswith(b"%%EOF")
         case ".png":
             return content.endswith(b"IEND\xaeB`\x82")
+        case ".msh":
+            # sections of Fluent's are in parentheses, which stand alone where one of text ends
+            return content.rstrip().endswith(b")")
+        case ".stl":
+            return len(content) == 84 + 50 * int.from_bytes(content[80:84], "little")
         case _:
             return any((folder / MANIFEST).is_file() for folder in path.parents)
     return True
