@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import shutil
+import signal
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,10 @@ from pipeline.line.run import Run, run
 # a busy machine is no fault of the code's
 settings.register_profile("fibertwin", deadline=None)
 settings.load_profile("fibertwin")
+
+# a job in a shell's background ignores Ctrl-C, and so would the programs that tests interrupt
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # pytest's own 1e-12 is more than any area or volume of a fiber in SI: with it, no such comparison could fail
 type(pytest.approx(1.0)).DEFAULT_ABSOLUTE_TOLERANCE = 0.0  # type: ignore[attr-defined]
