@@ -48,16 +48,27 @@ def interruptible() -> Iterator[None]:
     numbers = [getattr(signal, name) for name in _NAMES if hasattr(signal, name)]
     heard = [number for number in numbers if signal.getsignal(number) != signal.SIG_IGN]
     afterwards = signal.SIG_IGN
+    asked: list[int] = []
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        asked.append(number)
+        _raise_again(number)
+        if not _loading(frame):
+            raise Interrupted(number)
+
     try:
         for number in heard:
-            signal.signal(number, _interrupt)
+            signal.signal(number, interrupt)
         yield
-    except KeyboardInterrupt as interruption:
+    except (KeyboardInterrupt, Exception) as ended:
+        if not asked and not isinstance(ended, KeyboardInterrupt):
+            raise
+        # a library may have made another error of it, as pydantic does while it builds its schemas
         # a second one ends the process on the spot
         afterwards = signal.SIG_DFL
         for each in heard:
             signal.signal(each, afterwards)
-        number = interruption.number if isinstance(interruption, Interrupted) else signal.SIGINT
+        number = asked[0] if asked else signal.SIGINT
         name = signal.Signals(number).name
         # who closed the terminal does not read this
         with contextlib.suppress(OSError, ValueError):
@@ -71,12 +82,6 @@ def interruptible() -> Iterator[None]:
             signal.signal(each, afterwards)
         _raise_again(None)
         sys.unraisablehook = kept
-
-
-def _interrupt(number: int, frame: FrameType | None) -> None:
-    _raise_again(number)
-    if not _loading(frame):
-        raise Interrupted(number)
 
 
 def _raise_again(number: int | None) -> None:

@@ -156,3 +156,23 @@ def test_an_interruption_waits_while_a_compiled_module_is_loaded() -> None:
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False, timeout=120)
     assert (done.returncode, done.stdout) == (143, "loaded\n")
     assert done.stderr.startswith("stopped by SIGTERM")
+
+
+def test_an_interruption_that_a_library_makes_another_error_of_is_one() -> None:
+    script = (
+        "import os, signal; from pipeline.cli.interruption import interruptible\n"
+        "with interruptible():\n"
+        "    try: os.kill(os.getpid(), signal.SIGTERM)\n"
+        "    except BaseException as problem: raise ValueError('schema') from problem\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert done.returncode == 143
+    assert done.stderr.startswith("stopped by SIGTERM")
+    assert "Traceback" not in done.stderr
+
+
+def test_a_bug_keeps_its_traceback() -> None:
+    script = "from pipeline.cli.interruption import interruptible\nwith interruptible(): raise ValueError('a bug')\n"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "ValueError: a bug" in done.stderr
