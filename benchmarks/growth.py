@@ -6,8 +6,6 @@ table stands in docs/meshing.md between its marks, the plot is docs/gallery/mesh
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-import os
-import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +15,7 @@ from pipeline.analytics.tables.plots import save_figure
 from pipeline.line.run import Run
 from pipeline.nouns.fibers import Mat
 from pipeline.nouns.quality import QualityReport
+from validation.programs import spent
 from validation.tables import filled, table
 
 if TYPE_CHECKING:
@@ -76,19 +75,15 @@ def measured(folder: Path, side: float) -> Growth:
         If a run fails.
     """
     place = folder / f"side_{side:g}"
-    command = [sys.executable, "-m", "pipeline.cli", "run", "figure10", "--quiet", "--out", str(place)]
-    command += ["--set", f"mat.side={side:g} um"]
+    command = ["pipeline.cli", "run", "figure10", "--quiet", "--out", str(place), "--set", f"mat.side={side:g} um"]
     costs = {}
     for name, stage in STEPS.items():
         forced = ("mat", "surface", "enclosure") if stage == "enclosure" else (stage,)
         again = [word for each in forced for word in ("--force", each)]
-        child = subprocess.Popen([*command, "--until", stage, *again])
-        _, status, usage = os.wait4(child.pid, 0)
-        if status:
-            raise SystemExit(f"the mat of {side:g} um failed")
+        cost = spent(*command, "--until", stage, *again)
         made = Run.opened(place).manifests()
         wall = sum(made[each]["seconds"] for each in forced)
-        costs[name] = Cost(usage.ru_utime + usage.ru_stime, wall, usage.ru_maxrss * 1024.0)
+        costs[name] = Cost(cost.seconds, wall, cost.memory)
     run = Run.opened(place)
     report = run.read(QualityReport)
     return Growth(side, run.read(Mat).fibers, report.cells, costs, report.verdict)

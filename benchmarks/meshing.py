@@ -9,9 +9,7 @@ goes on, and ``python -m benchmarks.meshing`` without RUNS writes tables and plo
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import math
-import os
 import shutil
-import subprocess
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -30,6 +28,7 @@ from pipeline.nouns.mesh import FaceMesh, Patch
 from pipeline.nouns.mesh_measures import TetmeshMeasures
 from pipeline.nouns.quality import QualityReport
 from pipeline.quality.judge import judge
+from validation.programs import spent
 from validation.records import read_records, write_records
 from validation.tables import SOLVERS, filled, table
 
@@ -171,7 +170,7 @@ def measured(job: Job, runs: Path) -> list[Row]:
     shutil.rmtree(place, ignore_errors=True)
     if job.engine == "plain":
         _fibertwin(place, [], "enclosure")
-        seconds, memory = _program("benchmarks.meshing", "--plain", str(place))
+        seconds, memory = _cost("benchmarks.meshing", "--plain", str(place))
         return [replace(read_records(place / "plain.csv", Row)[0], mesh_seconds=seconds, mesh_memory=memory)]
     keys = [f"tetmesh.engine={job.engine}", f"tetmesh.edge={job.edge:g}", *job.changes]
     _fibertwin(place, keys, "enclosure")
@@ -199,16 +198,13 @@ def measured(job: Job, runs: Path) -> list[Row]:
 
 def _fibertwin(place: Path, keys: Sequence[str], until: str) -> tuple[float, float]:
     changes = [part for key in keys for part in ("--set", key)]
-    return _program("pipeline.cli", "run", "default", "--quiet", "--out", str(place), "--until", until, *changes)
+    return _cost("pipeline.cli", "run", "default", "--quiet", "--out", str(place), "--until", until, *changes)
 
 
-def _program(*arguments: str) -> tuple[float, float]:
-    """Run a module as a program: its processor seconds, children included, and its peak memory [GiB]."""
-    child = subprocess.Popen([sys.executable, "-m", *arguments])
-    _, status, usage = os.wait4(child.pid, 0)
-    if status:
-        raise SystemExit(f"{' '.join(arguments)} ended with {os.waitstatus_to_exitcode(status)}")
-    return usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 2**20
+def _cost(*arguments: str) -> tuple[float, float]:
+    """Processor seconds and peak memory [GiB] of a program."""
+    cost = spent(*arguments)
+    return cost.seconds, cost.memory / 2**30
 
 
 def limit(rows: Sequence[Row]) -> float:

@@ -16,10 +16,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pipeline.cli.bundled import found
 from pipeline.line.run import Run
 from pipeline.line.store import read_json
 from pipeline.report.page.headline import headline
+from validation.programs import spent
 from validation.tables import filled
 
 ROOT = Path(__file__).parents[1]
@@ -39,20 +39,7 @@ def measured(folder: Path) -> dict[str, Any]:
     """
     shutil.rmtree(folder, ignore_errors=True)
     began = time.monotonic()
-    command = [
-        sys.executable,
-        "-m",
-        "pipeline.cli",
-        "run",
-        str(found(Path("default"))),
-        "--out",
-        str(folder),
-        "--quiet",
-    ]
-    child = subprocess.Popen(command)
-    _, status, usage = os.wait4(child.pid, 0)
-    if status:
-        raise SystemExit("the default case failed")
+    cost = spent("pipeline.cli", "run", "default", "--out", str(folder), "--quiet")
     run = Run.opened(folder)
     manifests = run.manifests()
     quality = read_json(folder / "quality" / "quality.json")
@@ -67,9 +54,9 @@ def measured(folder: Path) -> dict[str, Any]:
         "command": "fibertwin run default",
         "processor": f"{platform.machine()}, {os.cpu_count()} cores",
         "wall_seconds": round(time.monotonic() - began, 1),
-        "processor_seconds": round(usage.ru_utime + usage.ru_stime, 1),
+        "processor_seconds": round(cost.seconds, 1),
         "stage_seconds": {name: round(manifest["seconds"], 2) for name, manifest in manifests.items()},
-        "peak_memory": usage.ru_maxrss * 1024,
+        "peak_memory": cost.memory,
         "fibers": manifests["mat"]["counts"]["fibers"],
         "cells": quality["cells"],
         "verdict": quality["verdict"],

@@ -13,6 +13,7 @@ import numpy as np
 from pipeline.analytics.formulas.slip import kuwabara_slip, slip_length
 from pipeline.analytics.models.pressure_models import pressure_model
 from pipeline.analytics.tables.plots import save_figure
+from pipeline.study.summary import estimate
 from validation.permeability_data import DATA, ROOT, SLIP_DATA, STUDIES, Measured, Slipping
 from validation.records import read_records
 from validation.tables import filled, table
@@ -127,12 +128,12 @@ def of_sizes(rows: Sequence[Measured]) -> list[list[Measured]]:
 
 def interval(values: Sequence[float]) -> tuple[float, float]:
     """Give the mean and the half width of its 95 % confidence interval (Student's t)."""
-    from scipy.stats import t
+    found = estimate(values)
+    return found.mean, found.half_width
 
-    mean = statistics.fmean(values)
-    if len(values) < 2:
-        return mean, math.nan
-    return mean, float(t.ppf(0.975, len(values) - 1)) * statistics.stdev(values) / math.sqrt(len(values))
+
+def _contact(mat: Measured | Slipping) -> str:
+    return mat.contact + (f", {mat.spacing:.2g} d" if mat.spacing else "")
 
 
 def _told(values: Sequence[float], form: str, unit: str = "") -> str:
@@ -148,10 +149,9 @@ def kinds_table(rows: Sequence[Measured], found: Fit) -> str:
         first = group[0]
         mean, half = interval([each.permeability for each in group])
         gains = [100.0 * (each.permeability_slip / each.permeability - 1.0) for each in group]
-        made = first.contact + (f", {first.spacing:.2g} d" if first.spacing else "")
         lines.append(
             [
-                made,
+                _contact(first),
                 f"{first.slope:g}",
                 str(len(group)),
                 _told([100.0 * each.solidity for each in group], ".1f", " %"),
@@ -200,7 +200,6 @@ def slip_table(rows: Sequence[Slipping]) -> str:
     lines = []
     for group in sorted(groups, key=lambda group: statistics.fmean(each.solidity for each in group)):
         first, solidity = group[0], statistics.fmean(each.solidity for each in group)
-        made = first.contact + (f", {first.spacing:.2g} d" if first.spacing else "")
         cells = []
         for kn in numbers:
             gains = [100.0 * each.gain for each in group if each.knudsen == kn]
@@ -208,7 +207,7 @@ def slip_table(rows: Sequence[Slipping]) -> str:
             spread = f" to {max(gains):+.1f}" if len(gains) > 1 else ""
             cells.append(f"{min(gains):+.1f}{spread} % ({cell:+.1f} %)")
         mats = len({each.seed for each in group})
-        lines.append([made, f"{first.slope:g}", str(mats), f"{100.0 * solidity:.1f} %", *cells])
+        lines.append([_contact(first), f"{first.slope:g}", str(mats), f"{100.0 * solidity:.1f} %", *cells])
     return table(["contact", "slope", "mats", "solidity", *(f"Kn {kn:g}" for kn in numbers)], lines)
 
 
