@@ -25,10 +25,6 @@ _AGAIN = 0.1  # seconds until an interruption that was thrown away is raised aga
 class Interrupted(KeyboardInterrupt):
     """Raised at whatever the command is doing when it is asked to end."""
 
-    def __init__(self, number: int) -> None:
-        super().__init__()
-        self.number = number
-
 
 @contextlib.contextmanager
 def interruptible() -> Iterator[None]:
@@ -52,9 +48,9 @@ def interruptible() -> Iterator[None]:
 
     def interrupt(number: int, frame: FrameType | None) -> None:
         asked.append(number)
-        _raise_again(number)
+        _raise_again(True)
         if not _loading(frame):
-            raise Interrupted(number)
+            raise Interrupted
 
     try:
         for number in heard:
@@ -80,22 +76,22 @@ def interruptible() -> Iterator[None]:
     finally:
         for each in heard:
             signal.signal(each, afterwards)
-        _raise_again(None)
+        _raise_again(False)
         sys.unraisablehook = kept
 
 
-def _raise_again(number: int | None) -> None:
-    """Raise an interruption again and again until it arrives; None ends that."""
+def _raise_again(wanted: bool) -> None:
+    """Raise an interruption again and again until it arrives, or end that."""
     if not hasattr(signal, "setitimer"):
         return
 
     def again(alarm: int, frame: FrameType | None) -> None:
         # in a block that cleans up after it, it has arrived, and must let that block end
-        if number is not None and not _arrived() and not _loading(frame):
-            raise Interrupted(number)
+        if not _arrived() and not _loading(frame):
+            raise Interrupted
 
-    signal.setitimer(signal.ITIMER_REAL, *((0.0, 0.0) if number is None else (_AGAIN, _AGAIN)))
-    signal.signal(signal.SIGALRM, signal.SIG_DFL if number is None else again)
+    signal.setitimer(signal.ITIMER_REAL, *((_AGAIN, _AGAIN) if wanted else (0.0, 0.0)))
+    signal.signal(signal.SIGALRM, again if wanted else signal.SIG_DFL)
 
 
 def _loading(frame: FrameType | None) -> bool:
