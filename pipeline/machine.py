@@ -12,6 +12,8 @@ import weakref
 from collections.abc import Iterator
 from typing import IO, Any
 
+MEMORY_SHARE = 0.85
+"""Of the memory that is free, what may be used where a case names no limit."""
 _LOCKED: "weakref.WeakSet[IO[Any]]" = weakref.WeakSet()
 
 
@@ -53,6 +55,11 @@ def free_memory() -> int:
     import psutil
 
     return int(psutil.virtual_memory().available)
+
+
+def memory_allowed(limit: float | None) -> float:
+    """Give the limit of a case [byte], or most of the free memory where it names none."""
+    return limit or MEMORY_SHARE * free_memory()
 
 
 def address_space() -> int:

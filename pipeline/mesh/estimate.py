@@ -5,6 +5,7 @@
 import math
 from typing import TYPE_CHECKING, Any
 
+from pipeline.machine import MEMORY_SHARE, memory_allowed
 from pipeline.mesh.engines.engine import Slenderness
 
 if TYPE_CHECKING:
@@ -114,8 +115,6 @@ def too_large(
     str, optional
         Cells, memory, what is allowed, and the keys that take less.
     """
-    from pipeline.mesh.engines.limits import memory_allowed
-
     allowed = memory_allowed(settings.memory_limit)
     if expected.memory <= unsure * allowed:
         return None
@@ -124,7 +123,8 @@ def too_large(
         f"the engine {engine.name} would make about {expected.cells:,.2g} cells and take {_size(expected.memory)}, and "
     )
     if settings.memory_limit is None:
-        said += f"{_size(allowed)} may be used (85 % of what is free; tetmesh.memory_limit names another limit)"
+        share = f"{100 * MEMORY_SHARE:.0f} % of what is free"
+        said += f"{_size(allowed)} may be used ({share}; tetmesh.memory_limit names another limit)"
     else:
         said += f"tetmesh.memory_limit allows {_size(allowed)}"
     edge = _edge_within(allowed / expected.memory, slender, settings)

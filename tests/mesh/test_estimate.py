@@ -11,13 +11,13 @@ from typing import Any
 
 import pytest
 
+from pipeline import machine
 from pipeline.case import read_case
 from pipeline.enclosure.duct import enclose
 from pipeline.errors import StageError
 from pipeline.line.run import Run, dry_run, run
 from pipeline.mat.generate import generate
 from pipeline.mesh import fill as filling
-from pipeline.mesh.engines import limits
 from pipeline.mesh.engines.engine import Slenderness
 from pipeline.mesh.engines.flawed import FlawedMeshError
 from pipeline.mesh.engines.lattice.engine import estimate_for as lattice_memory
@@ -126,7 +126,7 @@ def test_a_mesh_beyond_memory_is_refused_with_an_edge_that_fits(name: str, monke
     assert expected is not None
     needed = expected(slender, settings)
     # 85 % of what is free may be used
-    monkeypatch.setattr(limits, "free_memory", lambda: int(needed.memory * 0.7 / 0.85))
+    monkeypatch.setattr(machine, "free_memory", lambda: int(needed.memory * 0.7 / 0.85))
     assert too_large(needed, slender, settings, unsure=5.0) is None
     reason = too_large(needed, slender, settings)
     assert reason is not None
@@ -154,7 +154,7 @@ def test_a_case_that_cannot_fit_is_refused_before_its_mat_is_made(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     case = read_case(CASES / "figure10.toml")
-    monkeypatch.setattr(limits, "free_memory", lambda: 2**30)
+    monkeypatch.setattr(machine, "free_memory", lambda: 2**30)
     with pytest.raises(StageError, match=r"would make about .* cells and take .* GiB, and 0.85 GiB may be used"):
         run(case, tmp_path / "run")
     assert not (tmp_path / "run").exists()
@@ -167,7 +167,7 @@ def test_memory_that_goes_while_a_run_is_under_way_is_an_error(
     monkeypatch: pytest.MonkeyPatch, smoke: Run, tmp_path: Path
 ) -> None:
     shutil.copytree(smoke.folder, tmp_path / "run")
-    monkeypatch.setattr(limits, "free_memory", lambda: 2**20)
+    monkeypatch.setattr(machine, "free_memory", lambda: 2**20)
     with pytest.raises(StageError, match="may be used"):
         run(smoke.case, tmp_path / "run", force=frozenset({"tetmesh"}))
     # what was there stays
@@ -179,7 +179,7 @@ def test_the_lattice_counts_its_cubes_before_it_fills_them(monkeypatch: pytest.M
     domain = mixture(3, 10.0)
     settings = TetmeshSettings(engine="lattice", edge=0.6)
     made, _ = filling.fill(domain, settings)
-    monkeypatch.setattr(limits, "free_memory", lambda: int(0.5 * lattice_memory(made.cells).memory / 0.85))
+    monkeypatch.setattr(machine, "free_memory", lambda: int(0.5 * lattice_memory(made.cells).memory / 0.85))
     with pytest.raises(StageError, match=r"the engine lattice would make about"):
         lattice_mesh(domain, settings, silent)
 

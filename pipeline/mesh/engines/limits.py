@@ -1,19 +1,11 @@
-"""What an engine may use of this machine."""
+"""How long an engine may take."""
 
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 import time
 
 from pipeline.errors import StageError
-from pipeline.machine import free_memory
 from pipeline.progress import Progress
-
-_MEMORY_SHARE = 0.85  # of the memory that is free, where the case names no limit
-
-
-def memory_allowed(limit: float | None) -> float:
-    """Give the limit of a case [byte], or most of the machine's free memory where it names none."""
-    return limit or _MEMORY_SHARE * free_memory()
 
 
 def within(seconds: float, who: str, advice: str, progress: Progress) -> Progress:

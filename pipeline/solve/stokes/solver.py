@@ -9,7 +9,7 @@ import numpy as np
 from pipeline.analytics.formulas.slip import SLIP_COEFFICIENT, knudsen, regime
 from pipeline.errors import StageError
 from pipeline.geometry.triangles import area_vectors
-from pipeline.machine import free_memory
+from pipeline.machine import memory_allowed
 from pipeline.nouns.arrays import Floats, Ints
 from pipeline.nouns.domain import FluidDomain
 from pipeline.nouns.fibers import Pieces
@@ -33,7 +33,6 @@ CREEPING_REYNOLDS = 0.1
 """Fiber Reynolds number below which inertia is left out: it changes no drop that was measured by .5 % there."""
 _NODE_MEMORY = 3400  # bytes per node at the peak, measured at 210,000 cells beyond what the program itself takes
 _INERTIA_MEMORY = 1300  # bytes per node more, for what changes with the velocity
-_MEMORY_SHARE = 0.85
 _OTHER = {"slip": "no_slip", "no_slip": "slip"}
 
 
@@ -252,7 +251,7 @@ def duct_of(mesh: FaceMesh, domain: FluidDomain, sides: str) -> Duct:
 
 def _refuse_memory(nodes: int, inertia: bool, settings: StokesSettings) -> None:
     needed = nodes * (_NODE_MEMORY + (_INERTIA_MEMORY if inertia else 0))
-    allowed = settings.memory_limit or _MEMORY_SHARE * free_memory()
+    allowed = memory_allowed(settings.memory_limit)
     if needed > allowed:
         raise StageError(
             f"the flow on {nodes:,} nodes takes about {needed / 1e9:.1f} GB, and {allowed / 1e9:.1f} GB may be used: "

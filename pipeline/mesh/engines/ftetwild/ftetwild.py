@@ -10,12 +10,12 @@ from pipeline.geometry.box import Box
 from pipeline.geometry.faces import compacted
 from pipeline.geometry.tets import boundary
 from pipeline.geometry.triangles import area_vectors
+from pipeline.machine import memory_allowed
 from pipeline.mesh.boundary import assign, blunted_edges, flattened, planes
 from pipeline.mesh.engines.flawed import FlawedMeshError
 from pipeline.mesh.engines.ftetwild.engine import TetwildSettings
 from pipeline.mesh.engines.ftetwild.running import Meshed, run_mesher
 from pipeline.mesh.engines.ftetwild.size_field import size_field
-from pipeline.mesh.engines.limits import memory_allowed
 from pipeline.mesh.freedom import Freedom
 from pipeline.mesh.settings import TetmeshSettings
 from pipeline.mesh.working_mesh import WorkingMesh
@@ -64,9 +64,11 @@ def tetrahedralized(
     faces, _ = boundary(tets)
     # two envelopes: the mesher bounds the distance to the surface, not the distance along the plane's normal
     patch = assign(points, faces, domain.box, tolerance=2.0 * envelope)
-    blunt = blunted_edges(points, faces, domain.box, 2.0 * envelope)
-    blunt[_off_fibers(points, faces, domain) <= _BESIDE * domain.mean_diameter] = -1
-    points = flattened(points, faces, np.where(blunt >= 0, blunt, patch), domain.box)
+    plane = blunted_edges(points, faces, domain.box, 2.0 * envelope)
+    blunt = np.flatnonzero(plane >= 0)
+    blunt = blunt[_off_fibers(points, faces[blunt], domain) > _BESIDE * domain.mean_diameter]
+    patch[blunt] = plane[blunt]
+    points = flattened(points, faces, patch, domain.box)
     tets = _without_flat_sides(points, tets, domain.box)
     lost = lost_part(points, tets, domain)
     if lost is not None:

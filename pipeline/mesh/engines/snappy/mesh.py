@@ -14,8 +14,8 @@ from pipeline.errors import StageError
 from pipeline.geometry.box import Box
 from pipeline.geometry.polyhedra import polygons
 from pipeline.geometry.triangles import area_vectors
+from pipeline.machine import memory_allowed
 from pipeline.mesh.boundary import free_axes, planes
-from pipeline.mesh.engines.limits import memory_allowed
 from pipeline.mesh.engines.snappy.case import write_case
 from pipeline.mesh.engines.snappy.engine import SnappySettings
 from pipeline.mesh.engines.snappy.fit import fitted
