@@ -35,6 +35,12 @@ def cross(a: Vector, b: Vector) -> Vector:
 
 
 @compiled_for_threads
+def symmetric_determinant(xx: float, xy: float, xz: float, yy: float, yz: float, zz: float) -> float:
+    """Give the determinant of a symmetric matrix of three rows."""
+    return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
+
+
+@compiled_for_threads
 def length(a: Vector) -> float:
     """Give the Euclidean length."""
     return math.sqrt(dot(a, a))

@@ -15,7 +15,7 @@ import stat
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import IO
+from typing import IO, BinaryIO
 
 from pipeline import machine
 from pipeline.errors import StageError
@@ -48,12 +48,19 @@ def remove(path: Path) -> None:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Put a file in a place whole or not at all; what stood there, a link too, is replaced."""
+    """Put a text in a place whole or not at all, as `placed` does."""
+    with placed(path) as file:
+        file.write(text.encode())
+
+
+@contextlib.contextmanager
+def placed(path: Path) -> Iterator[BinaryIO]:
+    """Give a file to write, put in a place whole or not at all; what stood there, a link too, is replaced."""
     side = path.with_name(f".{path.name}.new")
     remove(side)
     try:
-        with open(os.open(side, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666), "w", encoding="utf-8") as file:  # noqa: PTH123
-            file.write(text)
+        with open(os.open(side, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666), "wb") as file:  # noqa: PTH123
+            yield file
         side.replace(path)
     except BaseException:
         with contextlib.suppress(OSError):

@@ -12,7 +12,7 @@ import numpy as np
 
 from pipeline.geometry.box import Box
 from pipeline.geometry.triangles import area_vectors
-from pipeline.nouns.arrays import Floats, Ints
+from pipeline.nouns.arrays import Bools, Floats, Ints
 from pipeline.nouns.patches import DUCT, FIBERS, LOWER, PATCHES, UPPER
 
 
@@ -63,7 +63,7 @@ def assign(points: Floats, faces: Ints, box: Box, tolerance: float) -> Ints:
     vectors = area_vectors(points, faces)
     areas = np.linalg.norm(vectors, axis=1)
     for plane in planes(box):
-        near = (np.abs(points[:, plane.axis] - plane.value) <= tolerance)[faces].all(axis=1)
+        near = _near(points, faces, plane, tolerance)
         facing = plane.sign * vectors[:, plane.axis] >= _FACING * areas
         patch[near & facing] = plane.patch
     return patch
@@ -94,7 +94,7 @@ def blunted_edges(points: Floats, faces: Ints, box: Box, tolerance: float) -> In
     found = np.full(len(faces), -1, dtype=np.int64)
     near_planes = np.zeros(len(faces), dtype=np.int64)
     for plane in planes(box):
-        near = (np.abs(points[:, plane.axis] - plane.value) <= tolerance)[faces].all(axis=1)
+        near = _near(points, faces, plane, tolerance)
         found[near & (found < 0)] = plane.patch
         near_planes += near
     return np.where(near_planes > 1, found, -1)
@@ -119,6 +119,11 @@ def flattened(points: Floats, faces: Ints, patch: Ints, box: Box) -> Floats:
     for plane in planes(box):
         flat[np.unique(faces[patch == plane.patch]), plane.axis] = plane.value
     return flat
+
+
+def _near(points: Floats, faces: Ints, plane: Plane, tolerance: float) -> Bools:
+    """Tell which faces lie near a plane with every vertex, (b,) array."""
+    return np.asarray((np.abs(points[:, plane.axis] - plane.value) <= tolerance)[faces].all(axis=1))
 
 
 def free_axes(points: Floats, box: Box, cyclic: bool = False) -> Floats:

@@ -67,12 +67,17 @@ class Freedom:
         """Lowest and highest coordinates of the duct, two (3,) arrays [m]."""
         return np.array(self.box.lower), np.array(self.box.upper)
 
+    def nearest(self, points: Floats) -> tuple[Floats, Floats]:
+        """Distance to the nearest fiber and its diameter, two (n,) arrays [m]; nan for what none is near."""
+        distance, piece = self.distance.with_piece(points)
+        diameter = self.diameter[self.distance.field[2][np.maximum(piece, 0)]]
+        return distance, np.where(piece >= 0, diameter, np.nan)
+
     def off_and_along(self, points: Floats) -> tuple[Floats, Floats]:
         """Give how far vertices of walls may move off the wall and along it, two (n,) arrays [m]."""
-        _, piece = self.distance.with_piece(points)
-        diameter = self.diameter[self.distance.field[2][np.maximum(piece, 0)]]
+        _, diameter = self.nearest(points)
         # a wall far from every fiber is nobody's: the thinnest decides
-        diameter = np.where(piece >= 0, diameter, self.diameter.min())
+        diameter = np.where(np.isnan(diameter), self.diameter.min(), diameter)
         return self.off * diameter, self.along * diameter
 
     def planes_at(self, points: Floats) -> Planes:

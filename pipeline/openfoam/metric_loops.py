@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from pipeline.geometry.compiled import compiled_for_threads
 from pipeline.geometry.tets import Cells
-from pipeline.geometry.vectors import Vector, cross, dot, length, minus, row
+from pipeline.geometry.vectors import Vector, cross, dot, length, minus, row, symmetric_determinant
 from pipeline.nouns.arrays import Bools, Floats, Ints
 from pipeline.openfoam.metrics import TINY
 
@@ -198,7 +198,7 @@ def determinant(mesh: Measured, found: Floats, begin: int, end: int) -> None:
             xx = xx if mesh.lively[0] else 1.0
             yy = yy if mesh.lively[1] else 1.0
             zz = zz if mesh.lively[2] else 1.0
-        found[cell] = abs(xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)) / 8.0
+        found[cell] = abs(symmetric_determinant(xx, xy, xz, yy, yz, zz)) / 8.0
 
 
 @compiled_for_threads

@@ -45,11 +45,9 @@ def beside_fibers(mesh: WorkingMesh, cells: Ints) -> Bools:
     Where nobody knows the axes of the fibers every cell may.
     """
     corners = mesh.tets[cells]
-    distance, piece = mesh.freedom.distance.with_piece(mesh.points[corners.ravel()])
-    diameter = mesh.freedom.diameter[mesh.freedom.distance.field[2][np.maximum(piece, 0)]]
-    known = (piece >= 0).reshape(corners.shape)
-    beside = (distance <= _BESIDE * diameter).reshape(corners.shape)
-    return np.asarray((known & beside).all(axis=1) | ~known.any(axis=1))
+    distance, diameter = (found.reshape(corners.shape) for found in mesh.freedom.nearest(mesh.points[corners.ravel()]))
+    # no number is at most another that is none
+    return np.asarray((distance <= _BESIDE * diameter).all(axis=1) | np.isnan(diameter).all(axis=1))
 
 
 def at_walls(mesh: WorkingMesh) -> Bools:

@@ -19,8 +19,6 @@ from pipeline.nouns.patches import FIBERS, SIDES
 from pipeline.progress import Progress
 
 _ROUNDS = 2  # the second makes good what repairing after the first moved
-
-
 _CUTS = (0.35, 0.65)  # of the way from a side to the opposite one: what lies at one is away from the other
 
 

@@ -17,7 +17,7 @@ from pipeline.geometry.compiled import compiled, compiled_for_threads
 from pipeline.geometry.tets import FACES, Cells
 from pipeline.geometry.threads import in_parts
 from pipeline.geometry.triangles import area_vectors, vertex_sums
-from pipeline.geometry.vectors import Vector, cross, dot, minus
+from pipeline.geometry.vectors import Vector, cross, dot, minus, symmetric_determinant
 from pipeline.mesh.working_mesh import INTERFACE, WorkingMesh
 from pipeline.nouns.arrays import Bools, Floats, Ints
 
@@ -124,7 +124,7 @@ def _indeterminacy(points: Floats, tets: Cells, across: Cells, cell: int) -> flo
         return 0.0  # no move of a vertex can help: `corners` splits such cells
     size = (total / inner) ** 2
     xx, xy, xz, yy, yz, zz = xx / size, xy / size, xz / size, yy / size, yz / size, zz / size
-    determinant = abs(xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)) / 8.0
+    determinant = abs(symmetric_determinant(xx, xy, xz, yy, yz, zz)) / 8.0
     return min(_HOPELESS, math.sqrt(_AIM_DETERMINANT / max(determinant, 1e-30)))
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pipeline.line.places import own_folder, remove, write_text
+from pipeline.line.places import own_folder, placed, remove, write_text
 from pipeline.line.store import DAMAGE, read_arrays
 from pipeline.nouns.arrays import Floats
 from pipeline.progress import NOTE, Progress, silent
@@ -66,13 +66,10 @@ class KeptSolve:
         """Keep arrays under a name, whole or not at all."""
         if self.folder is None:
             return
-        side = self.folder / f".{name}.new"
         try:
             own_folder(self.folder)
-            remove(side)
-            with open(os.open(side, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666), "wb") as file:  # noqa: PTH123
+            with placed(self._place(name)) as file:
                 np.savez(file, **arrays)  # type: ignore[arg-type]
-            side.replace(self._place(name))
             write_text(self.folder / _SECONDS, f"{self.before + time.monotonic() - self.began:.3f}")
         except OSError as problem:
             # the flow can be solved all the same
